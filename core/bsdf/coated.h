@@ -1,0 +1,85 @@
+// A diffuse base under a rough dielectric coat (see CoatedMaterial). Included by core/bsdf.h.
+//
+// Layered: the base sees light that has crossed the coat, T(wi) and T(wo), and light that the coat
+// sends back inside is reflected again and again, in closed form a / (1 - a r) with r the coat's
+// inner diffuse reflectance; 1/eta^2 is the change of solid angle at the interface. A base of
+// albedo 1 then returns all that enters.
+#pragma once
+
+#include "core/bsdf.h"
+#include "core/fresnel.h"
+#include "core/microfacet.h"
+#include "core/warp.h"
+
+namespace lockstep {
+inline namespace LOCKSTEP_ISA_NAMESPACE {
+
+template <class V>
+struct CoatedBsdf {
+  Vec3<V> diffuse, specular;
+  Ggx<V> ggx;
+  V eta;
+  V layered;            // 1 or 0
+  V inner_reflectance;  // of diffuse light inside, at the coat
+};
+
+template <class I>
+LOCKSTEP_INLINE CoatedBsdf<FloatOf<I>> load_coated(const MaterialTable& t, I index) {
+  const auto alpha = material_scalar(t, index, 6);
+  return {material_color(t, index, 0),    material_color(t, index, 3),
+          {{alpha, alpha}},               material_scalar(t, index, 7),
+          material_scalar(t, index, 8),   material_scalar(t, index, 9)};
+}
+
+// Share of light that gets through the coat at this angle; 1 where coat and base are just added.
+template <class V>
+LOCKSTEP_INLINE V transmittance(const CoatedBsdf<V>& bsdf, V cos_i) {
+  return V(1.0f) - bsdf.layered * fresnel_dielectric(cos_i, bsdf.eta);
+}
+
+// f / T(wi) of the base.
+template <class V>
+LOCKSTEP_INLINE Vec3<V> base_reflectance(const CoatedBsdf<V>& bsdf, V cos_o) {
+  const V solid_angle = fma(bsdf.layered, V(1.0f) / (bsdf.eta * bsdf.eta) - V(1.0f), V(1.0f));
+  const V scale = solid_angle * transmittance(bsdf, cos_o);
+  const V r = bsdf.layered * bsdf.inner_reflectance;
+  return {bsdf.diffuse.x * scale / (V(1.0f) - bsdf.diffuse.x * r),
+          bsdf.diffuse.y * scale / (V(1.0f) - bsdf.diffuse.y * r),
+          bsdf.diffuse.z * scale / (V(1.0f) - bsdf.diffuse.z * r)};
+}
+
+// Probability of sampling the coat, by what each layer reflects at this angle.
+template <class V>
+LOCKSTEP_INLINE V coat_probability(const CoatedBsdf<V>& bsdf, V cos_o) {
+  const V coat = max_component(bsdf.specular) * fresnel_dielectric(cos_o, bsdf.eta);
+  const V base = max_component(bsdf.diffuse) * transmittance(bsdf, cos_o);
+  const V p = clamp(coat / max(coat + base, V(1e-20f)), V(0.1f), V(0.9f));
+  return select(base <= V(0.0f), V(1.0f), select(coat <= V(0.0f), V(0.0f), p));
+}
+
+template <class V>
+LOCKSTEP_INLINE BsdfValue<V> eval(const CoatedBsdf<V>& bsdf, const Vec3<V>& wo, const Vec3<V>& wi) {
+  const Vec3<V> m = normalize(wo + wi);
+  const V d = bsdf.ggx.d(m) / (V(4.0f) * wo.z);
+  const V f = fresnel_dielectric(min(dot(wo, m), V(1.0f)), bsdf.eta);
+  const V base_pdf = cosine_hemisphere_pdf(wi.z);
+  const V base = base_pdf * transmittance(bsdf, wi.z);
+  const V p = coat_probability(bsdf, wo.z);
+  return {bsdf.specular * (f * d * bsdf.ggx.g2(wo, wi)) + base_reflectance(bsdf, wo.z) * base,
+          fma(p, d * bsdf.ggx.g1(wo), (V(1.0f) - p) * base_pdf)};
+}
+
+template <class V>
+LOCKSTEP_INLINE BsdfSample<V> sample(const CoatedBsdf<V>& bsdf, const Vec3<V>& wo, V lobe,
+                                     Vec2<V> u) {
+  const Vec3<V> coat = reflect(wo, bsdf.ggx.sample_visible_normal(wo, u));
+  const Vec3<V> base = cosine_hemisphere(u);
+  const Vec3<V> wi = select(lobe < coat_probability(bsdf, wo.z), coat, base);
+  const BsdfValue<V> value = eval(bsdf, wo, wi);
+  const MaskOf<V> valid = (wi.z > V(0.0f)) & (value.pdf > V(0.0f));
+  const V pdf = select(valid, value.pdf, V(0.0f));
+  return {wi, value.f_cos * (V(1.0f) / select(valid, pdf, V(1.0f))), pdf};
+}
+
+}  // namespace LOCKSTEP_ISA_NAMESPACE
+}  // namespace lockstep

@@ -1,0 +1,48 @@
+// From a scene description to the flat arrays that Embree and the kernels read.
+#pragma once
+
+#include "core/scene.h"
+
+#include <vector>
+
+namespace lockstep {
+
+struct FlatGeometry {
+  std::int32_t first_triangle = 0;
+  std::int32_t triangle_count = 0;
+  bool is_sphere = false;
+};
+
+struct FlatScene {
+  std::vector<float> positions;         // xyz per vertex, and one vertex of padding for Embree
+  std::vector<float> normals;           // xyz per vertex; empty where no mesh is smooth
+  std::vector<std::int32_t> triangles;  // three indices each, over all meshes
+  std::vector<FlatGeometry> geometries;
+  std::vector<std::int32_t> first_triangle, material, first_light, is_sphere, is_smooth;
+  std::vector<float> spheres;  // centre and radius per geometry
+  std::vector<std::int32_t> material_kinds;
+  std::vector<float> material_parameters;
+  std::vector<std::int32_t> light_of_primitive;
+  std::vector<std::int32_t> light_kinds;
+  std::vector<float> light_rows;
+  std::vector<float> light_cdf;
+  std::int32_t environment_light = -1;
+  CameraData camera;
+  std::vector<float> filter_x, filter_y;
+};
+
+FlatScene flatten(const SceneDescription& description);
+
+Features find_features(const SceneDescription& description, const FlatScene& flat);
+
+// Pointers into `flat`, which must outlive them. The Embree scene is left for the caller to set.
+SceneData view(const FlatScene& flat, const Features& features);
+
+// core/flatten_lights.cpp: fills the light tables from the emitting shapes and the environment.
+// Call once the geometry tables are filled.
+void flatten_lights(const SceneDescription& description, FlatScene& flat);
+
+// core/flatten_camera.cpp
+void flatten_camera(const CameraDescription& camera, const FilmDescription& film, FlatScene& flat);
+
+}  // namespace lockstep

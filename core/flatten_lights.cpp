@@ -1,0 +1,156 @@
+#include "core/flatten.h"
+#include "core/vec.h"
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+
+#include <array>
+#include <cmath>
+
+namespace lockstep {
+namespace {
+
+struct Light {
+  LightKind kind{};
+  glm::vec3 corner{0.0f}, edge1{0.0f}, edge2{0.0f}, normal{0.0f}, radiance{0.0f};
+  float area = 0.0f;  // radius of a sphere
+  float side = 1.0f;
+  float power = 0.0f;
+};
+
+using Corners = std::array<glm::vec3, 3>;
+
+Corners corners(const TriangleMesh& mesh, std::size_t triangle) {
+  const glm::uvec3 t = mesh.triangles[triangle];
+  return {mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]};
+}
+
+Light flat_light(LightKind kind, glm::vec3 corner, glm::vec3 e1, glm::vec3 e2,
+                 const Emission& emission) {
+  const glm::vec3 n = glm::cross(e1, e2);
+  const float parallelogram = glm::length(n);
+  Light l{kind, corner, e1, e2, glm::vec3(0.0f), emission.radiance};
+  l.area = kind == LightKind::Triangle ? 0.5f * parallelogram : parallelogram;
+  if (parallelogram > 0.0f) l.normal = n / parallelogram;
+  l.side = emission.two_sided ? 0.0f : 1.0f;
+  l.power = luminance(emission.radiance) * l.area * (emission.two_sided ? 2.0f : 1.0f) *
+            glm::pi<float>();
+  return l;
+}
+
+// The parallelogram that two triangles sharing their diagonal make: p0, p0 + e1, p0 + e1 + e2,
+// p0 + e2, if they make one. `a` is (p0, p1, p2) and `b` (p0, p2, p3) up to rotation of each.
+std::optional<Light> as_parallelogram(const Corners& a, const Corners& b,
+                                      const Emission& emission) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const glm::vec3 p0 = a[size_t(i)], p1 = a[size_t((i + 1) % 3)], p2 = a[size_t((i + 2) % 3)];
+      const glm::vec3 q0 = b[size_t(j)], q2 = b[size_t((j + 1) % 3)], q3 = b[size_t((j + 2) % 3)];
+      if (p0 != q0 || p2 != q2) continue;
+      const glm::vec3 gap = (p1 - p0) + (q3 - p0) - (p2 - p0);
+      const float size = glm::length(p2 - p0);
+      if (glm::length(gap) <= 1e-5f * size) {
+        return flat_light(LightKind::Parallelogram, p0, p1 - p0, q3 - p0, emission);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+// Lights of a mesh; `of_primitive` gets each triangle's light, counted from `first`.
+std::vector<Light> mesh_lights(const TriangleMesh& mesh, const Emission& emission, int first,
+                               std::vector<std::int32_t>& of_primitive) {
+  std::vector<Light> lights;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto index = first + std::int32_t(lights.size());
+    const Corners a = corners(mesh, i);
+    of_primitive.push_back(index);
+    if (i + 1 < mesh.triangles.size()) {
+      if (auto light = as_parallelogram(a, corners(mesh, i + 1), emission)) {
+        lights.push_back(*light);
+        of_primitive.push_back(index);
+        ++i;
+        continue;
+      }
+    }
+    lights.push_back(flat_light(LightKind::Triangle, a[0], a[1] - a[0], a[2] - a[0], emission));
+  }
+  return lights;
+}
+
+Light sphere_light(const Sphere& sphere, const Emission& emission) {
+  Light l{LightKind::Sphere, sphere.center};
+  l.radiance = emission.radiance;
+  l.area = sphere.radius;
+  l.side = emission.two_sided ? 0.0f : sphere.emits_inwards ? -1.0f : 1.0f;
+  l.power = luminance(emission.radiance) * 4.0f * glm::pi<float>() * glm::pi<float>() *
+            sphere.radius * sphere.radius * (emission.two_sided ? 2.0f : 1.0f);
+  return l;
+}
+
+float scene_radius(const FlatScene& flat) {
+  glm::vec3 lo(1e30f), hi(-1e30f);
+  const auto grow = [&](const float* p, float r) {
+    const glm::vec3 v(p[0], p[1], p[2]);
+    lo = glm::min(lo, v - r);
+    hi = glm::max(hi, v + r);
+  };
+  for (const std::int32_t i : flat.triangles) grow(&flat.positions[size_t(i) * 3], 0.0f);
+  for (std::size_t g = 0; g < flat.geometries.size(); ++g) {
+    if (flat.geometries[g].is_sphere) grow(&flat.spheres[g * 4], flat.spheres[g * 4 + 3]);
+  }
+  return hi.x < lo.x ? 1.0f : 0.5f * glm::length(hi - lo);
+}
+
+// Flux of the environment through the scene's bounding sphere.
+Light environment_light(glm::vec3 radiance, float radius) {
+  Light l{LightKind::Environment};
+  l.radiance = radiance;
+  l.power = luminance(radiance) * 4.0f * glm::pi<float>() * glm::pi<float>() * radius * radius;
+  return l;
+}
+
+// Probabilities proportional to power; equal where no light has a usable one.
+void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
+  double total = 0.0;
+  for (const Light& l : lights) total += l.power;
+  const bool usable = total > 0.0 && std::isfinite(total);
+  double below = 0.0;
+  for (const Light& l : lights) {
+    const double p = usable ? double(l.power) / total : 1.0 / double(lights.size());
+    flat.light_kinds.push_back(std::int32_t(l.kind));
+    flat.light_cdf.push_back(float(below));
+    for (const glm::vec3 v : {l.corner, l.edge1, l.edge2, l.normal, l.radiance}) {
+      flat.light_rows.insert(flat.light_rows.end(), {v.x, v.y, v.z});
+    }
+    flat.light_rows.insert(flat.light_rows.end(), {l.area, float(p), l.side, 0.0f, 0.0f});
+    below += p;
+  }
+  flat.light_cdf.push_back(1.0f);
+}
+
+}  // namespace
+
+void flatten_lights(const SceneDescription& description, FlatScene& flat) {
+  std::vector<Light> lights;
+  for (std::size_t g = 0; g < description.shapes.size(); ++g) {
+    const Shape& shape = description.shapes[g];
+    if (!shape.emission || shape.emission->radiance == glm::vec3(0.0f)) continue;
+    flat.first_light[g] = std::int32_t(flat.light_of_primitive.size());
+    const int first = int(lights.size());
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+      const auto added = mesh_lights(*mesh, *shape.emission, first, flat.light_of_primitive);
+      lights.insert(lights.end(), added.begin(), added.end());
+    } else {
+      flat.light_of_primitive.push_back(first);
+      lights.push_back(sphere_light(std::get<Sphere>(shape.geometry), *shape.emission));
+    }
+  }
+  if (description.environment && *description.environment != glm::vec3(0.0f)) {
+    flat.environment_light = std::int32_t(lights.size());
+    lights.push_back(environment_light(*description.environment, scene_radius(flat)));
+  }
+  append_rows(lights, flat);
+}
+
+}  // namespace lockstep

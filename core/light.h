@@ -1,0 +1,179 @@
+// Choosing a light, a point on it, and the densities of both.
+// Densities are per solid angle at the point that is lit and include the probability of choosing
+// the light. Directions point from the lit point to the light and are unit vectors.
+#pragma once
+
+#include "core/frame.h"
+#include "core/scene_data.h"
+#include "core/warp.h"
+
+namespace lockstep {
+inline namespace LOCKSTEP_ISA_NAMESPACE {
+
+template <class V>
+struct LightSample {
+  Vec3<V> wi;
+  V distance;  // infinite for the environment
+  Vec3<V> radiance;
+  V pdf;  // 0: nothing arrives from there
+};
+
+template <class V>
+struct LightRow {
+  Vec3<V> corner, edge1, edge2, normal, radiance;
+  V area, probability, side;
+};
+
+template <class I>
+LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {
+  const auto vec = [&](int column) LOCKSTEP_LAMBDA {
+    return gather_vec3(t.rows + column, index, light_stride);
+  };
+  const auto scalar = [&](int column) LOCKSTEP_LAMBDA {
+    return gather(t.rows + column, index * I(light_stride));
+  };
+  return {vec(0), vec(3), vec(6), vec(9), vec(12), scalar(15), scalar(16), scalar(17)};
+}
+
+// The light whose interval of the cumulative distribution holds u in [0, 1).
+template <class V>
+LOCKSTEP_INLINE IntOf<V> choose_light(const LightTable& t, V u) {
+  using I = IntOf<V>;
+  I first(0);
+  for (int step = int(std::bit_floor(unsigned(t.count))); step > 0; step /= 2) {
+    const I next = first + I(step);
+    const I probe = select(next < I(t.count), next, I(t.count));
+    first = select((gather(t.cdf, probe) <= u) & (next < I(t.count)), next, first);
+  }
+  return first;
+}
+
+// Density of a point on a flat light seen at `distance` under `cos_light`.
+template <class V>
+LOCKSTEP_INLINE V solid_angle_pdf(V distance, V cos_light, V area) {
+  return distance * distance / (cos_light * area);
+}
+
+// True where light leaves the side that `cos_light` = normal . (light to lit point) looks at.
+template <class V>
+LOCKSTEP_INLINE MaskOf<V> emits(V side, V cos_light) {
+  return (side == V(0.0f)) | (side * cos_light > V(0.0f));
+}
+
+// 1 - cos of the half angle under which a sphere is seen; negative from inside it.
+template <class V>
+LOCKSTEP_INLINE V sphere_cone(V distance2, V radius) {
+  const V sin2 = radius * radius / distance2;
+  const V cos_max = sqrt(max(V(0.0f), V(1.0f) - sin2));
+  return select(sin2 < V(0.9999f), sin2 / (V(1.0f) + cos_max), V(-1.0f));
+}
+
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_flat_light(const LightRow<V>& light, MaskOf<V> triangle,
+                                                 const Vec3<V>& p, Vec2<V> u) {
+  const Vec2<V> b = uniform_triangle(u);
+  const V s = select(triangle, b.x, u.x), t = select(triangle, b.y, u.y);
+  const Vec3<V> to = light.corner + fma(s, light.edge1, light.edge2 * t) - p;
+  const V distance2 = dot(to, to);
+  const V distance = sqrt(distance2);
+  const Vec3<V> wi = to * (V(1.0f) / distance);
+  const V cos_light = -dot(light.normal, wi);
+  const V pdf = light.probability * solid_angle_pdf(distance, abs(cos_light), light.area);
+  const MaskOf<V> lit = emits(light.side, cos_light) & (distance2 > V(0.0f)) & is_finite(pdf);
+  return {wi, distance, light.radiance, select(lit, pdf, V(0.0f))};
+}
+
+// From outside: uniform in the cone that the sphere fills. From inside: uniform over its area.
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_sphere_light(const LightRow<V>& light, const Vec3<V>& p,
+                                                   Vec2<V> u) {
+  const Vec3<V> to_centre = light.corner - p;
+  const V distance2 = dot(to_centre, to_centre);
+  const V radius = light.area;
+  const V one_minus_cos = sphere_cone(distance2, radius);
+  const MaskOf<V> outside = one_minus_cos > V(0.0f);
+
+  const V centre_distance = sqrt(distance2);
+  const Frame<V> frame = frame_around(to_centre * (V(1.0f) / max(centre_distance, V(1e-30f))));
+  const Vec3<V> local = uniform_cone(u, max(one_minus_cos, V(0.0f)));
+  const V sin2 = fma(local.x, local.x, local.y * local.y);
+  const V half_chord = sqrt(max(V(0.0f), fma(radius, radius, -(distance2 * sin2))));
+  const V outside_distance = fma(centre_distance, local.z, -half_chord);
+
+  const Vec3<V> n = uniform_sphere(u);
+  const Vec3<V> to = fma(radius, n, to_centre);
+  const V inside_distance = length(to);
+  const Vec3<V> inside_wi = to * (V(1.0f) / max(inside_distance, V(1e-30f)));
+  const V inside_pdf = solid_angle_pdf(inside_distance, abs(dot(n, inside_wi)),
+                                       V(4.0f * pi) * radius * radius);
+
+  const V side_seen = select(outside, V(1.0f), V(-1.0f));
+  const V pdf = light.probability * select(outside, uniform_cone_pdf(one_minus_cos), inside_pdf);
+  const MaskOf<V> lit = emits(light.side, side_seen) & is_finite(pdf);
+  return {select(outside, frame.to_world(local), inside_wi),
+          select(outside, outside_distance, inside_distance), light.radiance,
+          select(lit, pdf, V(0.0f))};
+}
+
+// The constant environment, seen by a surface: cosine-weighted around its shading normal.
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_environment(const LightRow<V>& light, const Frame<V>& frame,
+                                                  Vec2<V> u) {
+  const Vec3<V> local = cosine_hemisphere(u);
+  return {frame.to_world(local), V(std::numeric_limits<float>::infinity()), light.radiance,
+          light.probability * cosine_hemisphere_pdf(local.z)};
+}
+
+// A direction from p, with shading frame `frame`, to the lanes' lights.
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> index,
+                                            const Vec3<V>& p, const Frame<V>& frame, Vec2<V> u) {
+  using I = IntOf<V>;
+  const LightRow<V> light = load_light(scene.lights, index);
+  const I kind = gather(scene.lights.kinds, index);
+  LightSample<V> s{Vec3<V>(V(0.0f)), V(0.0f), Vec3<V>(V(0.0f)), V(0.0f)};
+  const auto merge = [&](MaskOf<V> m, const LightSample<V>& other) LOCKSTEP_LAMBDA {
+    s = {select<V>(m, other.wi, s.wi), select(m, other.distance, s.distance),
+         select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf)};
+  };
+  const MaskOf<V> triangle = kind == I(int(LightKind::Triangle));
+  const MaskOf<V> flat = triangle | (kind == I(int(LightKind::Parallelogram)));
+  const MaskOf<V> sphere = kind == I(int(LightKind::Sphere));
+  const MaskOf<V> environment = kind == I(int(LightKind::Environment));
+  if (any(flat)) merge(flat, sample_flat_light(light, triangle, p, u));
+  if (any(sphere)) merge(sphere, sample_sphere_light(light, p, u));
+  if (any(environment)) merge(environment, sample_environment(light, frame, u));
+  return s;
+}
+
+template <class V>
+struct Emitted {
+  Vec3<V> radiance;  // 0 from the side that does not emit
+  V pdf;             // with which sample_light gives this direction
+};
+
+// What a ray from p along wi receives from the area light it hits at `distance`.
+template <class V>
+LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, const Vec3<V>& p,
+                                     const Vec3<V>& wi, V distance) {
+  using I = IntOf<V>;
+  const LightRow<V> light = load_light(scene.lights, index);
+  const MaskOf<V> sphere = gather(scene.lights.kinds, index) == I(int(LightKind::Sphere));
+  V cos_light = -dot(light.normal, wi);
+  V pdf = solid_angle_pdf(distance, max(abs(cos_light), V(1e-20f)), light.area);
+  if (scene.spheres && any(sphere)) {
+    const Vec3<V> to_centre = light.corner - p;
+    const V one_minus_cos = sphere_cone(dot(to_centre, to_centre), light.area);
+    const MaskOf<V> outside = one_minus_cos > V(0.0f);
+    const Vec3<V> n = fma(distance, wi, -to_centre) * (V(1.0f) / light.area);
+    const V inside_pdf = solid_angle_pdf(distance, max(abs(dot(n, wi)), V(1e-20f)),
+                                         V(4.0f * pi) * light.area * light.area);
+    pdf = select(sphere, select(outside, uniform_cone_pdf(one_minus_cos), inside_pdf), pdf);
+    cos_light = select(sphere, -dot(n, wi), cos_light);
+  }
+  const Vec3<V> none(V(0.0f));
+  return {select<V>(emits(light.side, cos_light), light.radiance, none), pdf * light.probability};
+}
+
+}  // namespace LOCKSTEP_ISA_NAMESPACE
+}  // namespace lockstep

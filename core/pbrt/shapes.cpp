@@ -1,0 +1,229 @@
+#include "core/pbrt/shapes.h"
+
+#include "core/pbrt/bilinear.h"
+#include "core/pbrt/transform.h"
+#include "core/ply.h"
+
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+namespace lockstep::pbrt {
+
+namespace {
+
+void check_indices(const ParameterSet& set, const std::vector<int>& indices, size_t group,
+                   size_t vertex_count) {
+  const Parameter* p = set.any("indices");
+  const Location where = p != nullptr ? set.where(*p) : set.where();
+  if (indices.size() % group != 0) {
+    fail(where, set.owner() + " has " + std::to_string(indices.size()) +
+                    " indices; expected a multiple of " + std::to_string(group));
+  }
+  for (const int index : indices) {
+    if (index >= 0 && static_cast<size_t>(index) < vertex_count) continue;
+    fail(where, set.owner() + " has the index " + std::to_string(index) + ", but only " +
+                    std::to_string(vertex_count) + " points");
+  }
+}
+
+std::vector<glm::vec3> required_points(const ParameterSet& set) {
+  std::vector<glm::vec3> points = set.get_points("P");
+  if (points.empty()) fail(set.where(), set.owner() + " needs \"point3 P\"");
+  return points;
+}
+
+// P, N and uv of a mesh; the last two must match the first in number where given.
+TriangleMesh read_vertices(const ParameterSet& set) {
+  TriangleMesh mesh;
+  mesh.positions = required_points(set);
+  mesh.normals = set.get_normals("N");
+  mesh.uvs = set.get_uvs();
+  const auto check_count = [&](size_t count, const char* name) {
+    if (count == 0 || count == mesh.positions.size()) return;
+    fail(set.where(), set.owner() + " has " + std::to_string(mesh.positions.size()) +
+                          " points but " + std::to_string(count) + " values of \"" + name + "\"");
+  };
+  check_count(mesh.normals.size(), "N");
+  check_count(mesh.uvs.size(), "uv");
+  return mesh;
+}
+
+// Without "indices" the points themselves come in groups.
+std::vector<int> read_indices(const ParameterSet& set, size_t group, size_t vertex_count) {
+  std::vector<int> indices = set.get_ints("indices");
+  if (indices.empty()) {
+    if (vertex_count % group != 0) fail(set.where(), set.owner() + " needs \"integer indices\"");
+    indices.resize(vertex_count);
+    std::iota(indices.begin(), indices.end(), 0);
+  }
+  check_indices(set, indices, group, vertex_count);
+  return indices;
+}
+
+void set_triangles(const std::vector<int>& indices, TriangleMesh& mesh) {
+  mesh.triangles.reserve(indices.size() / 3);
+  for (size_t i = 0; i < indices.size(); i += 3) {
+    mesh.triangles.emplace_back(indices[i], indices[i + 1], indices[i + 2]);
+  }
+}
+
+TriangleMesh triangle_mesh(const ParameterSet& set, const ShapeContext&) {
+  TriangleMesh mesh = read_vertices(set);
+  set_triangles(read_indices(set, 3, mesh.positions.size()), mesh);
+  return mesh;
+}
+
+TriangleMesh bilinear_mesh(const ParameterSet& set, const ShapeContext&) {
+  const TriangleMesh vertices = read_vertices(set);
+  return triangulate_patches(vertices, read_indices(set, 4, vertices.positions.size()));
+}
+
+TriangleMesh ply_mesh(const ParameterSet& set, const ShapeContext& context) {
+  const std::string name = set.get_string("filename", "");
+  if (name.empty()) fail(set.where(), set.owner() + " needs \"string filename\"");
+  try {
+    return read_ply(context.resolve(name));
+  } catch (const Error& error) {
+    fail(set.where(), error.what());
+  }
+}
+
+void turn_over(TriangleMesh& mesh) {
+  for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+  for (glm::vec3& n : mesh.normals) n = -n;
+}
+
+TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext&) {
+  TriangleMesh control;
+  control.positions = required_points(set);
+  const std::vector<int> indices = set.get_ints("indices");
+  if (indices.empty()) fail(set.where(), set.owner() + " needs \"integer indices\"");
+  check_indices(set, indices, 3, control.positions.size());
+  set_triangles(indices, control);
+  set.ignore({"scheme"});
+
+  const int levels = set.get_int("levels", set.get_int("nlevels", 3));
+  constexpr double most_triangles = 1 << 26;
+  const double triangles = static_cast<double>(control.triangles.size()) * std::pow(4.0, levels);
+  if (levels < 0 || triangles > most_triangles) {
+    fail(set.where(), set.owner() + " cannot have " + std::to_string(levels) +
+                          " levels; give 0 or more, and no more than 67 million triangles");
+  }
+  try {
+    TriangleMesh surface = subdivide_loop(control, levels);
+    turn_over(surface);  // pbrt's normals of these surfaces oppose the winding
+    return surface;
+  } catch (const std::invalid_argument& error) {
+    fail(set.where(), set.owner() + ": " + error.what());
+  }
+}
+
+bool is_unit(glm::vec3 n) { return std::abs(glm::dot(n, n) - 1.0f) < 1e-3f; }
+
+// Files have normals of no length; those become smooth ones.
+void repair_normals(TriangleMesh& mesh) {
+  if (std::all_of(mesh.normals.begin(), mesh.normals.end(), is_unit)) return;
+  std::vector<glm::vec3> given = std::move(mesh.normals);
+  set_smooth_normals(mesh);
+  for (size_t i = 0; i < given.size(); ++i) {
+    if (is_unit(given[i])) mesh.normals[i] = given[i];
+  }
+}
+
+void agree_with_normals(TriangleMesh& mesh) {
+  if (mesh.normals.empty()) return;
+  for (glm::uvec3& t : mesh.triangles) {
+    const glm::vec3 a = mesh.positions[t.x];
+    const glm::vec3 face = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
+    const glm::vec3 shading = mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z];
+    if (glm::dot(face, shading) < 0.0f) std::swap(t.y, t.z);
+  }
+}
+
+Geometry to_world(TriangleMesh mesh, const ParameterSet& set, const ShapeContext& context) {
+  apply_transform(mesh, glm::mat4(context.object_to_world));
+  const auto is_finite = [](glm::vec3 p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  };
+  if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite)) {
+    fail(set.where(), set.owner() + " has points that leave the range of float in world space");
+  }
+  repair_normals(mesh);
+  if (context.reverse_orientation) turn_over(mesh);
+  agree_with_normals(mesh);
+  return mesh;
+}
+
+bool is_similarity(const glm::dmat3& m, double scale) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) {
+      const double expected = i == j ? 1.0 : 0.0;
+      if (std::abs(glm::dot(m[i], m[j]) / (scale * scale) - expected) > 1e-5) return false;
+    }
+  }
+  return true;
+}
+
+Geometry make_sphere(const ParameterSet& set, const ShapeContext& context, Warnings& warnings) {
+  const float radius = set.get_float("radius", 1.0f);
+  if (!(radius > 0.0f)) fail(set.where(), set.owner() + " needs a radius above 0");
+  if (set.get_float("zmin", -radius) > -radius || set.get_float("zmax", radius) < radius ||
+      set.get_float("phimax", 360.0f) < 360.0f) {
+    warnings.add(set.where(), "partial spheres are not supported; the full sphere is used");
+  }
+  const glm::dmat4& m = context.object_to_world;
+  const double scale = glm::length(glm::dvec3(m[0]));
+  if (!is_similarity(glm::dmat3(m), scale)) {
+    constexpr int segments = 128;
+    return to_world(tessellated_sphere(radius, segments), set, context);
+  }
+  const Sphere sphere{glm::vec3(m[3]), static_cast<float>(scale * static_cast<double>(radius)),
+                      context.reverse_orientation};
+  if (!std::isfinite(sphere.radius) || sphere.radius <= 0.0f) {
+    fail(set.where(), set.owner() + " has a radius that leaves the range of float");
+  }
+  return sphere;
+}
+
+struct MeshType {
+  std::string_view name;
+  TriangleMesh (*make)(const ParameterSet&, const ShapeContext&);  // in object space
+};
+
+// To support another shape made of triangles, write its function and add it here.
+constexpr MeshType mesh_types[] = {
+    {"trianglemesh", triangle_mesh},
+    {"bilinearmesh", bilinear_mesh},
+    {"loopsubdiv", loop_surface},
+    {"plymesh", ply_mesh},
+};
+
+}  // namespace
+
+std::optional<Geometry> make_shape(const std::string& type, const ParameterSet& set,
+                                   const ShapeContext& context, Warnings& warnings) {
+  if (type == "sphere") {
+    Geometry sphere = make_sphere(set, context, warnings);
+    set.warn_unused(warnings);
+    return sphere;
+  }
+  for (const MeshType& known : mesh_types) {
+    if (known.name != type) continue;
+    TriangleMesh mesh = known.make(set, context);
+    set.warn_unused(warnings);
+    if (!mesh.triangles.empty()) return to_world(std::move(mesh), set, context);
+    warnings.add(set.where(), set.owner() + " has no triangles; it is left out");
+    return std::nullopt;
+  }
+  warnings.add(set.where(), "Shape \"" + type + "\" is not supported; it is left out");
+  return std::nullopt;
+}
+
+}  // namespace lockstep::pbrt

@@ -1,0 +1,35 @@
+// Shapes of pbrt-v3 and v4 as world-space geometry.
+#pragma once
+
+#include "core/pbrt/parameters.h"
+#include "core/scene_description.h"
+
+#include <glm/mat4x4.hpp>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace lockstep::pbrt {
+
+using Geometry = std::variant<TriangleMesh, Sphere>;
+
+struct ShapeContext {
+  glm::dmat4 object_to_world{1.0};
+  bool reverse_orientation = false;
+  // Turns a file name in the scene into a path that can be opened.
+  std::function<std::string(const std::string&)> resolve;
+};
+
+// The shape `type`; nothing, with a warning, where it is not supported or has no surface.
+//
+// The side that emits follows pbrt: cross(p1 - p0, p2 - p0) in object space, turned by
+// ReverseOrientation; a mirroring transform keeps the side. Shading normals, themselves turned by
+// ReverseOrientation, overrule it. We turn the winding, which is what tells the side here. A sphere
+// emits outwards unless reversed. (Under a mirroring transform pbrt's own sphere light samples
+// one side and its emission test the other; we keep to the side that it samples.)
+std::optional<Geometry> make_shape(const std::string& type, const ParameterSet& parameters,
+                                   const ShapeContext& context, Warnings& warnings);
+
+}  // namespace lockstep::pbrt

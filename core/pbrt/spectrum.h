@@ -1,0 +1,27 @@
+// Colours of pbrt files, spectra included, as linear Rec. 709 RGB.
+#pragma once
+
+#include "core/pbrt/parameters.h"
+
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <string_view>
+
+namespace lockstep::pbrt {
+
+// What a colour stands for decides what a spectrum's RGB is relative to.
+enum class ColorUse {
+  Reflectance,  // also indices of refraction: a constant spectrum is grey
+  Light,        // a spectrum or black body gives its chromaticity, with luminance 1 as in pbrt-v4
+};
+
+// The parameter `name` as a colour; nothing where it is absent. Textures are not supported and give
+// a mean grey.
+std::optional<glm::vec3> find_color(const ParameterSet& parameters, std::string_view name,
+                                    ColorUse use, Warnings& warnings);
+
+glm::vec3 get_color(const ParameterSet& parameters, std::string_view name, ColorUse use,
+                    glm::vec3 fallback, Warnings& warnings);
+
+}  // namespace lockstep::pbrt

@@ -1,0 +1,28 @@
+// Scenes by name: a built-in scene's name or a file in a format that is understood.
+#pragma once
+
+#include "core/scene_description.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lockstep {
+
+// Reads `name`: a built-in scene, or a path to a pbrt file (v3 or v4).
+// Throws Error ("file:line: what is wrong") on missing or malformed input.
+SceneDescription read_scene(const std::string& name);
+
+struct BuiltinScene {
+  std::string_view name;
+  std::string_view summary;  // one line for `lockstep scenes`
+  SceneDescription (*make)();
+};
+
+// The scenes made by our own code; each needs no file.
+const std::vector<BuiltinScene>& builtin_scenes();
+
+// core/pbrt/reader.cpp; `path` is the file itself.
+SceneDescription read_pbrt(const std::string& path);
+
+}  // namespace lockstep

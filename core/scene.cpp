@@ -1,0 +1,115 @@
+#include "core/scene.h"
+
+#include "core/error.h"
+#include "core/flatten.h"
+
+#include <embree3/rtcore.h>
+
+#include <utility>
+
+namespace lockstep {
+namespace {
+
+std::vector<std::pair<std::string, bool>> list(const Features& f) {
+  return {{"smooth-normals", f.smooth_normals}, {"spheres", f.spheres},
+          {"diffuse", f.diffuse},               {"conductor", f.conductor},
+          {"coated", f.coated},                 {"area-lights", f.area_lights},
+          {"environment", f.environment},       {"light-choice", f.many_lights},
+          {"filter-table", f.filter_table}};
+}
+
+std::vector<std::string> names(const Features& f, bool present) {
+  std::vector<std::string> result;
+  for (const auto& [name, has] : list(f)) {
+    if (has == present) result.push_back(name);
+  }
+  return result;
+}
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using DeviceHandle = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
+using SceneHandle = std::unique_ptr<RTCSceneTy, SceneRelease>;
+
+void check(RTCDevice device) {
+  if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+    throw Error("Embree failed with error " + std::to_string(int(error)) +
+                (error == RTC_ERROR_OUT_OF_MEMORY ? ": not enough memory for this scene" : ""));
+  }
+}
+
+// One Embree geometry per shape, over the shared vertex and index arrays.
+void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id) {
+  const FlatGeometry& g = flat.geometries[id];
+  RTCGeometry geometry = nullptr;
+  if (g.is_sphere) {
+    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                               flat.spheres.data(), id * 4 * sizeof(float), 4 * sizeof(float), 1);
+  } else {
+    geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               flat.positions.data(), 0, 3 * sizeof(float),
+                               flat.positions.size() / 3 - 1);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               flat.triangles.data(), size_t(g.first_triangle) * 3 * sizeof(int),
+                               3 * sizeof(int), size_t(g.triangle_count));
+  }
+  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+}  // namespace
+
+std::vector<std::string> Features::present() const { return names(*this, true); }
+std::vector<std::string> Features::absent() const { return names(*this, false); }
+
+struct Scene::Storage {
+  SceneDescription description;  // without its geometry, which `flat` holds
+  Features features;
+  FlatScene flat;
+  DeviceHandle device;
+  SceneHandle scene;
+  SceneData data;
+};
+
+Scene::Scene(SceneDescription description, const std::string& embree_isa)
+    : storage_(std::make_unique<Storage>()) {
+  Storage& s = *storage_;
+  if (description.shapes.empty() && !description.environment) {
+    throw Error(description.name + ": nothing to render: no shape and no light");
+  }
+  s.flat = flatten(description);
+  s.features = find_features(description, s.flat);
+  description.shapes.clear();
+  s.description = std::move(description);
+
+  s.device.reset(rtcNewDevice(("isa=" + embree_isa).c_str()));
+  if (!s.device) throw Error("Embree cannot start for instruction set " + embree_isa);
+  s.scene.reset(rtcNewScene(s.device.get()));
+  rtcSetSceneBuildQuality(s.scene.get(), RTC_BUILD_QUALITY_HIGH);
+  for (unsigned id = 0; id < s.flat.geometries.size(); ++id) {
+    attach(s.device.get(), s.scene.get(), s.flat, id);
+  }
+  rtcCommitScene(s.scene.get());
+  check(s.device.get());
+
+  s.data = view(s.flat, s.features);
+  s.data.embree_scene = s.scene.get();
+}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+
+const SceneDescription& Scene::description() const { return storage_->description; }
+const SceneData& Scene::data() const { return storage_->data; }
+const Features& Scene::features() const { return storage_->features; }
+std::size_t Scene::triangle_count() const { return storage_->flat.triangles.size() / 3; }
+
+}  // namespace lockstep

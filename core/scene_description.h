@@ -1,0 +1,57 @@
+// A scene as its author wrote it, whatever the file format: what readers produce and
+// core/scene.h turns into arrays for the kernels.
+//
+// Conventions: right-handed or left-handed world as the file has it; positions in world space;
+// a triangle's geometric normal is normalize(cross(p1 - p0, p2 - p0)), and emission leaves from
+// that side; colours are linear Rec. 709 RGB; lengths in the file's unit.
+#pragma once
+
+#include "core/camera_description.h"
+#include "core/material.h"
+#include "core/mesh.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace lockstep {
+
+// Radiance leaving a surface, W/(m^2 sr) per RGB channel; one-sided unless said otherwise.
+struct Emission {
+  glm::vec3 radiance{0.0f};
+  bool two_sided = false;
+};
+
+struct Sphere {
+  glm::vec3 center{0.0f};
+  float radius = 1.0f;
+  bool emits_inwards = false;
+};
+
+// One piece of geometry with its material; `material` indexes SceneDescription::materials.
+struct Shape {
+  std::variant<TriangleMesh, Sphere> geometry;
+  int material = 0;
+  std::optional<Emission> emission;
+};
+
+// What the scene's author asked for; the command line overrides each.
+struct RenderDefaults {
+  int spp = 16;
+  int depth = 5;  // surface interactions that are lit; 1 is direct light only
+};
+
+struct SceneDescription {
+  std::string name;
+  std::vector<Material> materials;
+  std::vector<Shape> shapes;
+  std::optional<glm::vec3> environment;  // constant radiance from every direction
+  CameraDescription camera;
+  FilmDescription film;
+  RenderDefaults defaults;
+  std::vector<std::string> warnings;  // one line each, "file:line: what was not understood"
+};
+
+}  // namespace lockstep

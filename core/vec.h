@@ -1,0 +1,79 @@
+// Three-component vectors and colours over any lane type: glm::vec<3, V>, and what glm lacks there.
+// `dot` and what builds on it use fused multiply-add in one fixed order, so a packet's lanes and a
+// single ray agree bit for bit.
+#pragma once
+
+#include "core/simd.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace lockstep {
+inline namespace LOCKSTEP_ISA_NAMESPACE {
+
+template <class V>
+using Vec2 = glm::vec<2, V, glm::defaultp>;
+template <class V>
+using Vec3 = glm::vec<3, V, glm::defaultp>;
+
+template <class V>
+LOCKSTEP_INLINE Vec3<V> splat(glm::vec3 v) {
+  return {V(v.x), V(v.y), V(v.z)};
+}
+
+template <class V>
+LOCKSTEP_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
+}
+
+template <class V>
+LOCKSTEP_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
+  return {fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x))};
+}
+
+template <class V>
+LOCKSTEP_INLINE V max_component(const Vec3<V>& a) {
+  return max(max(a.x, a.y), a.z);
+}
+
+template <class V>
+LOCKSTEP_INLINE Vec3<V> abs(const Vec3<V>& a) {
+  return {abs(a.x), abs(a.y), abs(a.z)};
+}
+
+template <class V>
+LOCKSTEP_INLINE V length(const Vec3<V>& a) {
+  return sqrt(dot(a, a));
+}
+
+template <class V>
+LOCKSTEP_INLINE Vec3<V> normalize(const Vec3<V>& a) {
+  return a * (V(1.0f) / length(a));
+}
+
+// a + s * b
+template <class V>
+LOCKSTEP_INLINE Vec3<V> fma(V s, const Vec3<V>& b, const Vec3<V>& a) {
+  return {fma(s, b.x, a.x), fma(s, b.y, a.y), fma(s, b.z, a.z)};
+}
+
+template <class V>
+LOCKSTEP_INLINE Vec3<V> select(MaskOf<V> m, const Vec3<V>& a, const Vec3<V>& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+// Relative luminance of linear Rec. 709 RGB.
+template <class V>
+LOCKSTEP_INLINE V luminance(const Vec3<V>& c) {
+  return fma(c.x, V(0.2126f), fma(c.y, V(0.7152f), c.z * V(0.0722f)));
+}
+
+// Three floats that lie `stride` apart per index: x = base[i * stride], y and z behind it.
+template <class I>
+LOCKSTEP_INLINE Vec3<FloatOf<I>> gather_vec3(const float* base, I index, int stride) {
+  const I at = index * I(stride);
+  return {gather(base, at), gather(base + 1, at), gather(base + 2, at)};
+}
+
+}  // namespace LOCKSTEP_ISA_NAMESPACE
+}  // namespace lockstep

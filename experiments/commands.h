@@ -1,0 +1,20 @@
+// The subcommands. Each function adds its subcommand to the program and, when it is chosen, sets
+// `run` to what it has to do.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace lockstep {
+
+using RunCommand = std::function<void()>;
+
+void add_render_command(CLI::App& program, RunCommand& run);
+void add_compare_command(CLI::App& program, RunCommand& run);
+void add_demo_command(CLI::App& program, RunCommand& run);
+void add_metrics_command(CLI::App& program, RunCommand& run);
+void add_scenes_command(CLI::App& program, RunCommand& run);
+void add_samplers_command(CLI::App& program, RunCommand& run);
+
+}  // namespace lockstep

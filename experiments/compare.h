@@ -1,0 +1,97 @@
+// The equal-time experiment: every sampler renders every scene at every sample count with several
+// seeds, each render complete and timed, and each image is measured against one reference.
+//
+// Times are what RenderStats says: thread CPU seconds and wall seconds of the whole render, pilot,
+// filter and weights included. Scene loading is not part of them.
+#pragma once
+
+#include "core/image.h"
+#include "core/scene_description.h"
+#include "packets/render.h"
+#include "samplers/sampler_spec.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lockstep {
+
+struct CompareSettings {
+  std::vector<std::string> scenes;
+  std::vector<SamplerSpec> samplers;          // the first is what the others are measured against
+  std::vector<int> rungs = {4, 16, 64, 256};  // samples per pixel
+  int seeds = 8;
+  std::string reference_file;  // empty: render one
+  int reference_spp = 0;       // 0: 1024 or 16 times the longest rung, whichever is more
+  std::optional<int> depth;    // empty: the scene's
+  std::optional<glm::ivec2> resolution;
+  RenderSettings render;     // threads, width, lanes, instruction set, roulette depth
+  double max_seconds = 0.0;  // if positive: begin no further seed past this wall time
+  std::string directory;
+};
+
+// One complete render and its errors, in the order of metrics().
+struct Measurement {
+  int sampler = 0;
+  std::uint32_t seed = 0;
+  int spp = 0;
+  double cpu_seconds = 0.0;
+  double wall_seconds = 0.0;
+  int pilot_spp = 0;
+  double mean_weight = 0.0;
+  LaneLayout lanes;
+  double lanes_active = 0.0;
+  std::uint64_t nonfinite = 0;
+  std::vector<double> errors;
+};
+
+// The image that errors are measured against.
+struct Reference {
+  Image image;
+  std::string file;
+  std::string origin;  // one line for people: how it was made
+  int spp = 0;         // 0 where unknown
+  // Mean squared error over (reference^2 + 0.01), estimated from two independent halves.
+  std::optional<double> relmse;
+};
+
+// Files in the output directory, relative to it, of the first seed's render.
+struct RunImages {
+  int sampler = 0;
+  int spp = 0;
+  std::string exr, png, weights_png;
+};
+
+struct SceneComparison {
+  std::string scene;  // as named on the command line
+  std::string label;  // short, unique, fit for a file name
+  int width = 0;
+  int height = 0;
+  int depth = 0;
+  int packet_width = 0;  // SIMD lanes, and threads, as rendered
+  int threads = 0;
+  std::size_t triangles = 0;
+  std::vector<std::string> features, left_out, warnings;
+  Reference reference;
+  std::string reference_png;
+  float exposure = 1.0f;  // factor on radiance in every PNG of this scene
+  std::vector<Measurement> runs;
+  std::vector<RunImages> images;
+};
+
+struct Comparison {
+  CompareSettings settings;
+  bool complete = true;  // false where it was interrupted or ran out of its time
+  std::vector<SceneComparison> scenes;
+};
+
+// Called with the share of the work done and what is being rendered; false stops the experiment.
+using CompareProgress = std::function<bool(double fraction, std::string_view label)>;
+
+// Runs the experiment; errors.csv in the directory grows row by row, images appear as they are
+// rendered. When stopped, returns what was measured so far. Throws Error, UsageError.
+Comparison compare(const CompareSettings& settings, const CompareProgress& progress);
+
+}  // namespace lockstep

@@ -1,0 +1,55 @@
+#include "experiments/compare_run.h"
+
+#include "core/error.h"
+#include "experiments/output_file.h"
+#include "experiments/progress.h"
+#include "experiments/report.h"
+#include "experiments/summary.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace lockstep {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A result that is worth less than it looks is pointed out where the user will see it.
+void warn(const Comparison& comparison) {
+  for (const SceneComparison& scene : comparison.scenes) {
+    for (const std::string& warning : scene.warnings) {
+      fmt::print(stderr, "lockstep: warning: {}\n", warning);
+    }
+    std::uint64_t nonfinite = 0;
+    for (const Measurement& run : scene.runs) nonfinite += run.nonfinite;
+    if (nonfinite > 0) {
+      fmt::print(stderr, "lockstep: warning: {}: {} samples were not finite and were left out\n",
+                 scene.scene, nonfinite);
+    }
+  }
+}
+
+}  // namespace
+
+void run_comparison(const CompareSettings& settings, bool quiet) {
+  ProgressMeter meter(quiet);
+  const Comparison comparison = compare(settings, [&](double fraction, std::string_view label) {
+    meter.show(fraction, label);
+    return !interrupted();
+  });
+  meter.clear();
+  warn(comparison);
+  const auto summary = summarize(comparison);
+  const fs::path directory = settings.directory;
+  write_text_file((directory / "summary.json").string(), summary.dump(1) + '\n');
+  write_text_file((directory / "report.html").string(), report_html(summary));
+  fmt::print("{}\n", results_table(summary));
+  fmt::print("Every render: {}\nSummary:      {}\nImages:       {}\nReport:       {}\n",
+             (directory / "errors.csv").string(), (directory / "summary.json").string(),
+             (directory / "*.png").string(), (directory / "report.html").string());
+  if (interrupted())
+    throw Error("stopped by the user; what was measured until then is in the report");
+}
+
+}  // namespace lockstep

@@ -1,0 +1,32 @@
+// errors.csv: one row for each render of a comparison, written and flushed as it is measured.
+#pragma once
+
+#include "experiments/compare.h"
+
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace lockstep {
+
+// A field as RFC 4180 wants it: quoted where it holds a comma, a quote or a line break.
+std::string csv_field(std::string_view text);
+
+// scene,sampler,seed,spp,cpu_seconds,wall_seconds, then the metrics in the order of metrics().
+std::string errors_csv_header();
+std::string errors_csv_row(std::string_view scene, std::string_view sampler,
+                           const Measurement& run);
+
+// Starts the file anew; one from an earlier run is kept as errors-previous.csv.
+class ErrorsCsv {
+ public:
+  explicit ErrorsCsv(const std::string& directory);
+  void append(std::string_view scene, std::string_view sampler,
+              const Measurement& run);  // throws Error
+
+ private:
+  std::string path_;
+  std::ofstream file_;
+};
+
+}  // namespace lockstep

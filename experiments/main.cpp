@@ -1,0 +1,94 @@
+// The program: chooses a subcommand, and turns errors into one line and an exit status.
+#include "core/error.h"
+#include "experiments/commands.h"
+#include "experiments/machine.h"
+#include "experiments/progress.h"
+#include "packets/render.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <memory>
+
+namespace {
+
+enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2 };
+
+int report(std::string message, ExitStatus status) {
+  std::replace(message.begin(), message.end(), '\n', ' ');
+  fmt::print(stderr, "lockstep: {}\n", message);
+  return status;
+}
+
+// Lists subcommands with the first line of their description; their own --help has the rest.
+struct HelpFormatter : CLI::Formatter {
+  std::string make_subcommand(const CLI::App* command) const override {
+    const std::string description = command->get_description();
+    return fmt::format("  {:28}{}\n", command->get_name(),
+                       description.substr(0, description.find('\n')));
+  }
+};
+
+// What to do about a command line that could not be understood.
+std::string advice(const CLI::App& program) {
+  for (const CLI::App* command : program.get_subcommands()) {
+    return fmt::format("see 'lockstep {} --help'", command->get_name());
+  }
+  return "see 'lockstep --help'";
+}
+
+void describe(CLI::App& program) {
+  program.name("lockstep");
+  program.description(
+      "Lockstep traces packets of rays that share random numbers, and measures what that buys in\n"
+      "speed and costs or saves in error, at equal time.");
+  program.footer(
+      "Start with:\n"
+      "  lockstep demo                             equal-time comparison; 1.5 minutes\n"
+      "  lockstep render cornell -o cornell.exr    one image of a built-in scene; seconds\n"
+      "  lockstep compare cornell --samplers random,cpt,rcs,owen -o out/cornell\n"
+      "\n"
+      "Exit status: 0 done, 1 failed while running, 2 wrong usage.");
+  program.set_version_flag("--version", fmt::format("lockstep {}", lockstep::version()));
+  program.set_help_flag("-h,--help", "Print this help and exit");
+  program.require_subcommand(1);
+  const auto formatter = std::make_shared<HelpFormatter>();
+  formatter->column_width(30);
+  formatter->label("REQUIRED", "(required)");
+  formatter->label("Excludes", "not with");
+  program.formatter(formatter);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program;
+  describe(program);
+  lockstep::RunCommand run;
+  lockstep::add_render_command(program, run);
+  lockstep::add_compare_command(program, run);
+  lockstep::add_demo_command(program, run);
+  lockstep::add_metrics_command(program, run);
+  lockstep::add_scenes_command(program, run);
+  lockstep::add_samplers_command(program, run);
+  try {
+    program.parse(argc, argv);
+    lockstep::catch_interrupts();
+    run();
+    return kDone;
+  } catch (const CLI::RequiredError& error) {
+    const bool unknown = argc > 1 && argv[1][0] != '-' && program.get_subcommands().empty();
+    const std::string what =
+        unknown ? fmt::format("unknown subcommand '{}'", argv[1]) : std::string(error.what());
+    return report(fmt::format("{}; {}", what, advice(program)), kWrongUsage);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    return report(fmt::format("{}; {}", error.what(), advice(program)), kWrongUsage);
+  } catch (const lockstep::UsageError& error) {
+    return report(fmt::format("{}; {}", error.what(), advice(program)), kWrongUsage);
+  } catch (const std::exception& error) {
+    return report(error.what(), kFailed);
+  }
+}

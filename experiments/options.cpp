@@ -1,0 +1,121 @@
+#include "experiments/options.h"
+
+#include "core/error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace lockstep {
+namespace {
+
+constexpr int kLargestSide = 1 << 15;  // pixels
+
+// The whole text as a number from 1 to `largest`.
+std::optional<int> positive(std::string_view text, int largest) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  if (value < 1 || value > largest) return {};
+  return value;
+}
+
+// Membership in a list that the option's description already gives.
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+  return CLI::Validator(
+      [choices](std::string& text) {
+        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return std::string();
+        return fmt::format("'{}' is not one of {}", text, fmt::join(choices, ", "));
+      },
+      "");
+}
+
+}  // namespace
+
+CLI::Validator number_between(double low, double high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = error == std::errc() && end == text.data() + text.size();
+        if (whole && value >= low && value <= high) return std::string();
+        return fmt::format("'{}' is not a number from {} to {}", text, low, high);
+      },
+      "");
+}
+
+void add_renderer_options(CLI::App& command, RendererOptions& options) {
+  const auto add = [&](const char* flag, auto& value, const char* type, const char* description) {
+    return command.add_option(flag, value, description)->type_name(type)->group("Renderer");
+  };
+  add("--depth", options.depth, "N",
+      "Surface interactions that are lit; 1 is direct light only\n(default: the scene's)")
+      ->check(number_between(1, 1000));
+  add("--roulette-depth", options.roulette_depth, "N",
+      "Interactions after which Russian roulette may end a path")
+      ->check(number_between(1, 1000))
+      ->capture_default_str();
+  add("--resolution", options.resolution, "WxH", "Image size in pixels (default: the scene's)");
+  add("--threads", options.threads, "N", "Threads; 0 means one for each processor")
+      ->check(number_between(0, 4096))
+      ->capture_default_str();
+  add("--width", options.width, "LANES",
+      "SIMD lanes: 1, 4, 8, 16, or auto: the fastest for the instruction set")
+      ->check(one_of({"auto", "1", "4", "8", "16"}))
+      ->capture_default_str();
+  add("--lanes", options.lanes, "XxYxS",
+      "Rays that share packets: pixels across x pixels down x samples of\n"
+      "each, such as 4x4x1, 2x2x4 or 1x1x16, or auto: the sampler's")
+      ->capture_default_str();
+  add("--isa", options.isa, "ISA",
+      "Instruction set of the kernels: sse4, avx2, avx512, or auto: the\n"
+      "widest this CPU has, unless LOCKSTEP_ISA is set")
+      ->check(one_of({"auto", "sse4", "avx2", "avx512"}))
+      ->capture_default_str();
+}
+
+RenderSettings render_settings(const RendererOptions& options) {
+  RenderSettings settings;
+  settings.isa = choose_isa(options.isa);
+  settings.roulette_depth = options.roulette_depth;
+  settings.threads = options.threads;
+  settings.width = options.width == "auto" ? 0 : std::stoi(options.width);
+  settings.lanes_auto = options.lanes == "auto";
+  if (!settings.lanes_auto) settings.lanes = parse_lane_layout(options.lanes);
+  return settings;
+}
+
+glm::ivec2 parse_resolution(std::string_view text) {
+  const std::size_t x = text.find('x');
+  if (x != std::string_view::npos) {
+    const std::optional<int> width = positive(text.substr(0, x), kLargestSide);
+    const std::optional<int> height = positive(text.substr(x + 1), kLargestSide);
+    if (width && height) return {*width, *height};
+  }
+  throw UsageError(
+      fmt::format("--resolution: '{}' is not WxH with sides from 1 to {} pixels, such as 512x512",
+                  text, kLargestSide));
+}
+
+std::vector<int> parse_sample_counts(std::string_view text) {
+  std::vector<int> counts;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const std::optional<int> count = positive(rest.substr(0, comma), 1 << 24);
+    if (!count) {
+      throw UsageError(fmt::format(
+          "--spp: '{}' is not a list of samples per pixel from 1 to 16777216, such as 4,16,64",
+          text));
+    }
+    counts.push_back(*count);
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  std::sort(counts.begin(), counts.end());
+  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+  return counts;
+}
+
+}  // namespace lockstep

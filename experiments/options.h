@@ -1,0 +1,41 @@
+// Command-line options that several subcommands share.
+#pragma once
+
+#include "packets/render.h"
+
+#include <CLI/CLI.hpp>
+#include <glm/vec2.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lockstep {
+
+// How to render, as typed; empty or "auto" where nothing was said.
+struct RendererOptions {
+  std::optional<int> depth;
+  int roulette_depth = 5;
+  std::string resolution;
+  int threads = 0;
+  std::string width = "auto";
+  std::string lanes = "auto";
+  std::string isa = "auto";
+};
+
+// Accepts numbers from `low` to `high`; help shows the option's own words alone.
+CLI::Validator number_between(double low, double high);
+
+void add_renderer_options(CLI::App& command, RendererOptions& options);
+
+// Threads, width, lanes, instruction set and roulette depth. Throws UsageError, Error.
+RenderSettings render_settings(const RendererOptions& options);
+
+// "WxH" in pixels. Throws UsageError.
+glm::ivec2 parse_resolution(std::string_view text);
+
+// "1,4,16": positive and ascending after sorting; duplicates go. Throws UsageError.
+std::vector<int> parse_sample_counts(std::string_view text);
+
+}  // namespace lockstep

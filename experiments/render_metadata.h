@@ -1,0 +1,18 @@
+// The settings of a render, as they are stored in an image file's header.
+#pragma once
+
+#include "core/image.h"
+#include "packets/render.h"
+#include "samplers/sampler_spec.h"
+
+#include <string>
+
+namespace lockstep {
+
+// "4x4x1": pixels across, pixels down, samples of each.
+std::string to_string(const LaneLayout& lanes);
+
+Metadata render_metadata(const std::string& scene, const SamplerSpec& sampler,
+                         const RenderSettings& settings, const RenderResult& result);
+
+}  // namespace lockstep

@@ -1,0 +1,21 @@
+// summary.json: what a comparison found, for scripts, the terminal's table and the report.
+#pragma once
+
+#include "experiments/compare.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace lockstep {
+
+// Per scene, sampler and sample count: median and 5 - 95 % of every time and metric over the
+// seeds, and the runs themselves; per scene: errors at equal CPU time, interpolated, never
+// extrapolated, with their ratio to the first sampler.
+nlohmann::ordered_json summarize(const Comparison& comparison);
+
+// The equal-time results as lines of text; where no time is common to all samplers, the medians
+// at each sample count.
+std::string results_table(const nlohmann::ordered_json& summary);
+
+}  // namespace lockstep

@@ -1,0 +1,83 @@
+#include "core/error.h"
+#include "packets/kernel.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string>
+
+namespace lockstep {
+
+extern const Kernel kernel_sse4_1, kernel_sse4_4, kernel_sse4_8, kernel_sse4_16;
+extern const Kernel kernel_avx2_1, kernel_avx2_4, kernel_avx2_8, kernel_avx2_16;
+extern const Kernel kernel_avx512_1, kernel_avx512_4, kernel_avx512_8, kernel_avx512_16;
+
+namespace {
+
+constexpr const Kernel* kernels[] = {
+    &kernel_sse4_1,   &kernel_sse4_4,   &kernel_sse4_8,   &kernel_sse4_16,
+    &kernel_avx2_1,   &kernel_avx2_4,   &kernel_avx2_8,   &kernel_avx2_16,
+    &kernel_avx512_1, &kernel_avx512_4, &kernel_avx512_8, &kernel_avx512_16,
+};
+
+bool cpu_runs(Isa isa) {
+  __builtin_cpu_init();
+  switch (isa) {
+    case Isa::Sse4: return __builtin_cpu_supports("sse4.2");
+    case Isa::Avx2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case Isa::Avx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+             __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+  }
+  return false;
+}
+
+std::string available_names() {
+  std::string names;
+  for (const Isa isa : available_isas()) names += fmt::format(" {}", name(isa));
+  return names;
+}
+
+}  // namespace
+
+std::vector<Isa> available_isas() {
+  std::vector<Isa> result;
+  for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
+    if (cpu_runs(isa)) result.push_back(isa);
+  }
+  if (result.empty()) throw Error("this CPU lacks SSE4.2, which the narrowest kernels need");
+  return result;
+}
+
+Isa choose_isa(std::string_view text) {
+  std::string_view from;
+  if (text == "auto") {
+    const char* forced = std::getenv("LOCKSTEP_ISA");
+    if (!forced || !*forced) return available_isas().back();
+    text = forced;
+    from = " (from the environment variable LOCKSTEP_ISA)";
+  }
+  for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
+    if (name(isa) != text) continue;
+    if (cpu_runs(isa)) return isa;
+    throw Error(fmt::format("this CPU does not run {}{}; it runs{}", text, from, available_names()));
+  }
+  throw UsageError(fmt::format("unknown instruction set '{}'{}; choose from auto, sse4, avx2, avx512",
+                               text, from));
+}
+
+std::string embree_isa(Isa isa) {
+  return isa == Isa::Sse4 ? "sse4.2" : std::string(name(isa));
+}
+
+int default_width(Isa isa) { return isa == Isa::Sse4 ? 4 : isa == Isa::Avx2 ? 8 : 16; }
+
+const Kernel& find_kernel(Isa isa, int width) {
+  const int wanted = width == 0 ? default_width(isa) : width;
+  for (const Kernel* kernel : kernels) {
+    if (kernel->isa == isa && kernel->width == wanted) return *kernel;
+  }
+  throw UsageError(fmt::format("no kernel of width {}; choose from auto, 1, 4, 8, 16", width));
+}
+
+}  // namespace lockstep

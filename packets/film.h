@@ -1,0 +1,35 @@
+// Sums of samples per pixel. See FilmView.
+#pragma once
+
+#include "core/image.h"
+#include "packets/kernel.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lockstep {
+
+struct Film {
+  int width = 0;
+  int height = 0;
+  std::uint32_t samples = 0;  // per pixel, taken so far
+  std::vector<double> sum;
+  std::vector<std::uint32_t> count;
+
+  Film() = default;
+  Film(int w, int h)
+      : width(w), height(h), sum(size_t(w) * size_t(h) * 3), count(size_t(w) * size_t(h)) {}
+  FilmView view() { return {width, sum.data(), count.data()}; }
+};
+
+// Means of the finite samples; black where a pixel has none.
+Image mean(const Film& film);
+
+// The mean over both films' samples together: sample-count weighted, hence unbiased.
+Image mean(const Film& a, const Film& b);
+
+// w a + (1 - w) b per pixel of the films' means, by a one-channel map of w. Biased where w depends
+// on a.
+Image interpolate(const Film& a, const Film& b, const Image& weights);
+
+}  // namespace lockstep

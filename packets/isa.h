@@ -1,0 +1,29 @@
+// Instruction sets that kernels are compiled for, and the choice among them at start.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lockstep {
+
+enum class Isa { Sse4, Avx2, Avx512 };
+
+constexpr std::string_view name(Isa isa) {
+  return isa == Isa::Sse4 ? "sse4" : isa == Isa::Avx2 ? "avx2" : "avx512";
+}
+
+// Instruction sets that were compiled in and this CPU runs, narrowest first.
+std::vector<Isa> available_isas();
+
+// "auto" (the environment variable LOCKSTEP_ISA if set, else the widest available) or a name.
+// Throws UsageError for an unknown name, Error where this CPU cannot run it.
+Isa choose_isa(std::string_view text = "auto");
+
+// Embree's name of the instruction set, for Scene's constructor.
+std::string embree_isa(Isa isa);
+
+// Lanes that --width auto stands for: the packet width measured fastest on that instruction set.
+int default_width(Isa isa);
+
+}  // namespace lockstep

@@ -1,0 +1,32 @@
+// One pass over the image: a range of samples of every pixel, tiles spread over threads.
+#pragma once
+
+#include "packets/film.h"
+#include "packets/kernel.h"
+
+#include <functional>
+
+namespace lockstep {
+
+// What passes have cost so far.
+struct PassTotals {
+  TileCounts counts;
+  double cpu_seconds = 0.0;  // thread CPU time inside tiles
+};
+
+struct Pass {
+  const Kernel* kernel = nullptr;
+  const SceneData* scene = nullptr;
+  const SamplerState* sampler = nullptr;
+  PathSettings path;
+  std::uint32_t samples = 1;
+  int threads = 1;
+};
+
+// Adds samples [film.samples, film.samples + pass.samples) to the film. `tile_done` is called after
+// each tile, from one thread at a time, with the share of this pass that is done; once it returns
+// false no further tile begins, film.samples stays, and the function returns false.
+bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
+              const std::function<bool(double)>& tile_done);
+
+}  // namespace lockstep

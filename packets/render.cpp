@@ -1,0 +1,255 @@
+#include "packets/render.h"
+
+#include "core/cpu_clock.h"
+#include "core/error.h"
+#include "core/hash.h"
+#include "packets/checkpoint.h"
+#include "packets/pass.h"
+#include "samplers/dimensions.h"
+#include "samplers/weight_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <thread>
+
+namespace lockstep {
+namespace {
+
+// Films of a render: the pilot R, where the sampler has one, and the image C.
+struct Films {
+  Film pilot, image;
+};
+
+// How many samples go to the pilot.
+int pilot_samples(const SamplerSpec& sampler, const RenderSettings& settings) {
+  if (sampler.weight_source != WeightSource::Map) return 0;
+  if (settings.time_seconds > 0.0) return sampler.pilot > 0 ? sampler.pilot : 4;
+  const int wanted = sampler.pilot > 0 ? sampler.pilot : std::max(1, settings.spp / 4);
+  return std::min(wanted, settings.spp);
+}
+
+// Independent keys for what must be independent: C's samples must not know R's.
+std::uint32_t stream_seed(std::uint32_t seed, std::uint32_t stream) {
+  return pcg3d(seed, stream, 0x1ec5u).x;
+}
+
+SamplerState pilot_state(const RenderSettings& settings) {
+  SamplerState state;
+  state.seed = stream_seed(settings.seed, 1);
+  return state;
+}
+
+SamplerState image_state(const SamplerSpec& sampler, const RenderSettings& settings) {
+  SamplerState state;
+  state.seed = stream_seed(settings.seed, 0);
+  state.shared = sampler.shared;
+  state.sequence = sampler.sequence;
+  state.perturbation = sampler.perturbation;
+  state.weight = sampler.perturbation == Perturbation::None ? 0.0f : sampler.weight;
+  return state;
+}
+
+// Lanes over the pixels of a block stay together where pixels share a sequence. Pixels that do not
+// are no worse off in this order than in any other.
+LaneLayout choose_lanes(const RenderSettings& settings) {
+  return settings.lanes_auto ? LaneLayout{} : settings.lanes;
+}
+
+// The flag pays on bounce rays only while lanes stay close together: up to w = 1/16 or so, measured
+// on scenes of 66k to 4M triangles; beyond, it costs up to half the speed.
+bool coherent_bounces(const SamplerState& state, double weight) {
+  return state.shared && weight <= 1.0 / 16.0;
+}
+
+class Renderer {
+ public:
+  Renderer(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
+           const Progress& progress)
+      : scene_(scene), sampler_(sampler), settings_(settings), progress_(progress),
+        start_(wall_seconds()), saved_(start_) {
+    const FilmDescription& film = scene.description().film;
+    films_ = {Film(film.width, film.height), Film(film.width, film.height)};
+    pass_.kernel = &find_kernel(settings.isa, settings.width);
+    pass_.scene = &scene.data();
+    pass_.path = {settings.depth, settings.roulette_depth, choose_lanes(settings)};
+    pass_.threads = settings.threads > 0 ? settings.threads
+                                         : int(std::max(1u, std::thread::hardware_concurrency()));
+    pilot_spp_ = pilot_samples(sampler, settings);
+  }
+
+  RenderResult run() {
+    restore();
+    RenderResult result;
+    SamplerState state = image_state(sampler_, settings_);
+    double weight = state.shared ? double(state.weight) : 1.0;
+    if (pilot_spp_ > 0) {
+      render_pilot();
+      const double before = thread_cpu_seconds();
+      result.weights =
+          make_weights(mean(films_.pilot), {sampler_.c, sampler_.t, sampler_.filter});
+      weight = mean_weight(*result.weights);
+      totals_.cpu_seconds += thread_cpu_seconds() - before;
+      state.weights = result.weights->pixels.data();
+    }
+    pass_.sampler = &state;
+    pass_.path.coherent_bounces = coherent_bounces(state, weight);
+    if (settings_.time_seconds > 0.0) {
+      render_for_time();
+    } else {
+      render_to(films_.image, std::uint32_t(settings_.spp - pilot_spp_));
+    }
+    save(true);
+    result.image = combine(result.weights);
+    result.stats = stats(weight);
+    return result;
+  }
+
+ private:
+  std::uint32_t samples_done() const { return films_.pilot.samples + films_.image.samples; }
+
+  void render_pilot() {
+    const SamplerState state = pilot_state(settings_);
+    pass_.sampler = &state;
+    render_to(films_.pilot, std::uint32_t(pilot_spp_));
+  }
+
+  // One pass where nothing has to be saved on the way; else passes of about ten seconds.
+  void render_to(Film& film, std::uint32_t samples) {
+    std::uint32_t chunk = settings_.resume_file.empty() ? samples : 1;
+    while (film.samples < samples) {
+      const double before = wall_seconds();
+      run(film, std::min(chunk, samples - film.samples));
+      if (wall_seconds() - before < 10.0) chunk *= 2;
+      save(false);
+    }
+  }
+
+  // Passes until the time is used up: each as long as fits by the speed so far, so that the last
+  // ones are single samples.
+  void render_for_time() {
+    std::uint32_t chunk = 1;
+    while (true) {
+      const double before = wall_seconds();
+      run(films_.image, chunk);
+      save(false);
+      const double now = wall_seconds();
+      const double per_sample = (now - before) / chunk;
+      const double left = settings_.time_seconds - (now - start_);
+      if (left < per_sample) break;
+      chunk = std::uint32_t(std::clamp(0.5 * left / per_sample, 1.0, 2.0 * chunk));
+    }
+  }
+
+  void run(Film& film, std::uint32_t samples) {
+    pass_.samples = samples;
+    const double done = double(samples_done());
+    const bool finished = run_pass(pass_, film, totals_, [&](double share) {
+      if (!progress_) return true;
+      const double fraction = settings_.time_seconds > 0.0
+                                  ? (wall_seconds() - start_) / settings_.time_seconds
+                                  : (done + share * samples) / double(settings_.spp);
+      return progress_(std::min(fraction, 1.0));
+    });
+    if (!finished) throw Cancelled();
+  }
+
+  // Everything that a sample's value depends on.
+  std::string key() const {
+    const FilmDescription& film = scene_.description().film;
+    return fmt::format("{} {} {}x{} seed {} depth {} roulette {} pilot {} isa {}",
+                       scene_.description().name, to_string(sampler_), film.width, film.height,
+                       settings_.seed, settings_.depth, settings_.roulette_depth, pilot_spp_,
+                       name(settings_.isa));
+  }
+  void restore() {
+    if (settings_.resume_file.empty()) return;
+    load_checkpoint(settings_.resume_file, key(), {&films_.pilot, &films_.image});
+  }
+  void save(bool finished) {
+    if (settings_.resume_file.empty()) return;
+    if (!finished && wall_seconds() - saved_ < 5.0) return;
+    save_checkpoint(settings_.resume_file, key(), {&films_.pilot, &films_.image});
+    saved_ = wall_seconds();
+  }
+
+  Image combine(const std::optional<Image>& weights) const {
+    if (weights && sampler_.combine == Combine::Weight && films_.image.samples > 0) {
+      return interpolate(films_.pilot, films_.image, *weights);
+    }
+    return mean(films_.pilot, films_.image);
+  }
+
+  RenderStats stats(double weight) const {
+    const TileCounts& counts = totals_.counts;
+    RenderStats s;
+    s.wall_seconds = wall_seconds() - start_;
+    s.cpu_seconds = totals_.cpu_seconds;
+    s.paths = counts.rays.camera;
+    s.rays = counts.rays;
+    s.width = pass_.kernel->width;
+    if (counts.packets > 0) {
+      s.lanes_active = double(counts.packet_rays) / (double(counts.packets) * s.width);
+    }
+    s.nonfinite = counts.nonfinite;
+    s.bad_samples.assign(counts.bad,
+                         counts.bad + std::min<std::uint64_t>(counts.nonfinite, TileCounts::kept));
+    s.spp = int(samples_done());
+    s.pilot_spp = pilot_spp_;
+    s.mean_weight = weight;
+    s.lanes = pass_.path.lanes;
+    s.threads = pass_.threads;
+    return s;
+  }
+
+  const Scene& scene_;
+  const SamplerSpec& sampler_;
+  const RenderSettings& settings_;
+  const Progress& progress_;
+  double start_, saved_;
+  Films films_;
+  Pass pass_;
+  PassTotals totals_;
+  int pilot_spp_ = 0;
+};
+
+int parse_extent(std::string_view text, std::string_view part) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+  if (error != std::errc() || end != part.data() + part.size() || value < 1 || value > 256 ||
+      (value & (value - 1)) != 0) {
+    throw UsageError(fmt::format(
+        "lane layout '{}' needs the form XxYxS in powers of two, such as 4x4x1 or 1x1x16", text));
+  }
+  return value;
+}
+
+}  // namespace
+
+LaneLayout parse_lane_layout(std::string_view text) {
+  if (text == "auto") return {};
+  const std::size_t first = text.find('x');
+  const std::size_t second = first == std::string_view::npos ? first : text.find('x', first + 1);
+  if (second == std::string_view::npos) parse_extent(text, "");
+  const LaneLayout lanes{parse_extent(text, text.substr(0, first)),
+                         parse_extent(text, text.substr(first + 1, second - first - 1)),
+                         parse_extent(text, text.substr(second + 1))};
+  if (lanes.x > tile_size || lanes.y > tile_size || lanes.x * lanes.y * lanes.samples > 256) {
+    throw UsageError(fmt::format("lane layout '{}' is too large: at most {}x{} pixels and 256 lanes",
+                                 text, tile_size, tile_size));
+  }
+  return lanes;
+}
+
+RenderResult render(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
+                    const Progress& progress) {
+  if (settings.spp < 1 && settings.time_seconds <= 0.0) throw UsageError("spp must be at least 1");
+  if (settings.depth < 1 || settings.depth > max_depth) {
+    throw UsageError(fmt::format("depth must lie in 1..{}", max_depth));
+  }
+  return Renderer(scene, sampler, settings, progress).run();
+}
+
+}  // namespace lockstep

@@ -1,0 +1,89 @@
+#include "samplers/weight_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace lockstep {
+namespace {
+
+// Calls f(x, y) for the pixels within `radius` of (cx, cy) that lie inside the image.
+template <class F>
+void for_window(const Image& image, int cx, int cy, int radius, F f) {
+  for (int y = std::max(0, cy - radius); y <= std::min(image.height - 1, cy + radius); ++y) {
+    for (int x = std::max(0, cx - radius); x <= std::min(image.width - 1, cx + radius); ++x) {
+      f(x, y);
+    }
+  }
+}
+
+void gaussian_pixel(const Image& in, int cx, int cy, float* out) {
+  std::array<float, 3> sum{};
+  float total = 0.0f;
+  for_window(in, cx, cy, 2, [&](int x, int y) {
+    const auto d2 = float((x - cx) * (x - cx) + (y - cy) * (y - cy));
+    const float weight = std::exp(-0.5f * d2);
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * in.at(x, y)[c];
+    total += weight;
+  });
+  for (std::size_t c = 0; c < 3; ++c) out[c] = sum[c] / total;
+}
+
+// The lower middle value where the window is cut to an even number of pixels.
+void median_pixel(const Image& in, int cx, int cy, float* out) {
+  for (int c = 0; c < 3; ++c) {
+    std::array<float, 9> values{};
+    int n = 0;
+    for_window(in, cx, cy, 1, [&](int x, int y) { values[size_t(n++)] = in.at(x, y)[c]; });
+    const auto middle = values.begin() + (n - 1) / 2;
+    std::nth_element(values.begin(), middle, values.begin() + n);
+    out[c] = *middle;
+  }
+}
+
+}  // namespace
+
+Image filter_pilot(const Image& pilot, WeightFilter filter) {
+  if (filter == WeightFilter::None) return pilot;
+  Image out(pilot.width, pilot.height);
+  for (int y = 0; y < pilot.height; ++y) {
+    for (int x = 0; x < pilot.width; ++x) {
+      filter == WeightFilter::Gaussian ? gaussian_pixel(pilot, x, y, out.at(x, y))
+                                       : median_pixel(pilot, x, y, out.at(x, y));
+    }
+  }
+  return out;
+}
+
+float relative_difference(const Image& image, int cx, int cy) {
+  float largest = 0.0f;
+  for_window(image, cx, cy, 1, [&](int x, int y) {
+    for (int c = 0; c < 3; ++c) {
+      const float a = image.at(cx, cy)[c], b = image.at(x, y)[c];
+      const float reference = std::max(a, b);
+      if (reference > 0.0f) largest = std::max(largest, std::abs(a - b) / reference);
+    }
+  });
+  return largest;
+}
+
+Image make_weights(const Image& pilot, const WeightSettings& settings) {
+  const Image filtered = filter_pilot(pilot, settings.filter);
+  Image weights(pilot.width, pilot.height, 1);
+  for (int y = 0; y < pilot.height; ++y) {
+    for (int x = 0; x < pilot.width; ++x) {
+      const float d = relative_difference(filtered, x, y);
+      const bool leaves = d > 0.0f && d >= settings.t;  // d = 0 stays, even where c is infinite
+      *weights.at(x, y) = leaves ? std::min(1.0f, settings.c * d) : 0.0f;
+    }
+  }
+  return weights;
+}
+
+double mean_weight(const Image& weights) {
+  const double sum = std::accumulate(weights.pixels.begin(), weights.pixels.end(), 0.0);
+  return weights.pixels.empty() ? 0.0 : sum / double(weights.pixels.size());
+}
+
+}  // namespace lockstep

@@ -1,0 +1,29 @@
+// Weights of randomized coherent sampling from a pilot image (Staal and Hachisuka, step 2).
+#pragma once
+
+#include "core/image.h"
+#include "samplers/sampler_spec.h"
+
+namespace lockstep {
+
+struct WeightSettings {
+  float c = 4.0f;
+  float t = 0.02f;
+  WeightFilter filter = WeightFilter::Gaussian;
+};
+
+// The pilot after the filter. Gaussian: 5x5, sigma 1 pixel, normalised inside the image.
+// Median: 3x3, each channel by itself.
+Image filter_pilot(const Image& pilot, WeightFilter filter);
+
+// d of pixel (x, y): the largest |a - b| / max(a, b) over its eight neighbours inside the image and
+// the three channels; 0 where both are 0. In [0, 1] for images without negative values.
+float relative_difference(const Image& image, int x, int y);
+
+// One channel: w = min(1, c d) where d >= t, else 0.
+Image make_weights(const Image& pilot, const WeightSettings& settings);
+
+// The mean over all pixels.
+double mean_weight(const Image& weights);
+
+}  // namespace lockstep

@@ -1,0 +1,107 @@
+#!/bin/bash
+# Runs the built program as a user would: exit statuses, messages and files.
+# Usage: cli_test.sh PROGRAM
+set -u
+program=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  failures=$((failures + 1))
+}
+
+# expect STATUS PATTERN ARGUMENT...: runs the program; its stderr (stdout when it succeeds) has
+# PATTERN, and an error is one line that begins with the program's name.
+expect() {
+  local status=$1 pattern=$2 got
+  shift 2
+  "$program" "$@" >stdout 2>stderr </dev/null
+  got=$?
+  [ "$got" = "$status" ] || fail "status $got instead of $status: lockstep $* ($(head -c 300 stderr))"
+  if [ "$status" = 0 ]; then
+    [ -z "$pattern" ] || grep -qE -- "$pattern" stdout || fail "no '$pattern' in the output of: lockstep $*"
+  else
+    [ "$(grep -vc warning: stderr)" = 1 ] || fail "not one line: lockstep $*: $(cat stderr)"
+    grep -qE -- "^lockstep: .*$pattern" stderr || fail "no '$pattern': lockstep $*: $(cat stderr)"
+  fi
+}
+
+# has FILE PATTERN
+has() { grep -qE -- "$2" "$1" || fail "no '$2' in $1"; }
+
+small="--resolution 32x24 --spp 4 --quiet"
+
+# Help and lists.
+expect 0 'lockstep [0-9]+\.[0-9]+' --version
+expect 0 'compare' --help
+for command in render compare demo metrics scenes samplers; do
+  expect 0 'Usage: lockstep' "$command" --help
+done
+expect 0 '^cornell ' scenes
+expect 0 'rcs' samplers
+
+# Wrong usage: status 2.
+expect 2 'subcommand'
+expect 2 "unknown subcommand 'frobnicate'" frobnicate
+expect 2 'unknown|not expected' render cornell -o a.exr --bogus
+expect 2 'output' render cornell
+expect 2 'SCENE' render -o a.exr
+expect 2 'spp' render cornell -o a.exr --spp 0
+expect 2 'spp' render cornell -o a.exr --spp many
+expect 2 'time' render cornell -o a.exr --time -1
+expect 2 'excludes' render cornell -o a.exr --spp 4 --time 1
+expect 2 'resolution' render cornell -o a.exr --resolution 0x5
+expect 2 'resolution' render cornell -o a.exr --resolution 5
+expect 2 'width' render cornell -o a.exr --width 3
+expect 2 'isa' render cornell -o a.exr --isa z80
+expect 2 'lanes' render cornell -o a.exr --lanes 3x5
+expect 2 'nosuch' render cornell -o a.exr --sampler nosuch
+expect 2 'exr' render cornell -o a.text
+expect 2 'weight map' render cornell -o a.exr --weights w.exr
+expect 2 'samplers' compare cornell -o out
+expect 2 'twice' compare cornell --samplers random,random -o out
+expect 2 'spp' compare cornell --samplers random --spp 4,x -o out
+expect 2 'TEST' metrics a.exr
+
+# Failures while running: status 1, before anything is rendered.
+expect 1 'nosuch.pbrt' render nosuch.pbrt -o a.exr
+expect 1 'missing' render cornell -o missing/a.exr
+expect 1 'missing' render cornell -o a.exr --stats missing/a.json
+expect 1 'a.exr' metrics a.exr b.exr
+[ -e a.exr ] && fail "a failed run left a.exr"
+
+# A render, its statistics and its weight map.
+expect 0 '' render cornell -o a.exr $small --sampler rcs --seed 3 --stats a.json --weights w.exr
+for key in scene sampler width isa threads seed spp depth resolution render_seconds cpu_seconds \
+  paths rays camera bounce shadow paths_per_cpu_second lanes_active nonfinite features left_out \
+  peak_memory_bytes version lanes pilot_spp mean_weight biased; do
+  has a.json "\"$key\": "
+done
+has a.json '"seed": 3'
+[ -s w.exr ] || fail "no weight map"
+expect 0 'Mpaths' render cornell -o b.exr --resolution 32x24 --spp 2
+expect 0 '' render cornell -o c.exr --resolution 16x24 --spp 2 --quiet
+expect 0 '' render cornell -o t.exr --resolution 32x24 --time 0.2 --quiet
+
+# Metrics.
+expect 0 '^rmse +0$' metrics a.exr a.exr
+expect 0 '"relmse_trimmed": ' metrics a.exr b.exr --json
+expect 1 '32x24.*16x24' metrics a.exr c.exr
+
+# A comparison.
+expect 0 'report.html' compare cornell --samplers 'random,rcs:c=2,t=0.01,cpt' --spp 2,8 --seeds 2 \
+  --reference-spp 32 --resolution 32x24 -o out --quiet
+[ "$(wc -l <out/errors.csv)" = 13 ] || fail "errors.csv has $(wc -l <out/errors.csv) lines, not 13"
+has out/errors.csv '^scene,sampler,seed,spp,cpu_seconds,wall_seconds,rmse,relmse,relmse_trimmed'
+has out/errors.csv '^cornell,"rcs:c=2,t=0.01",1,8,'
+has out/summary.json '"equal_time"'
+has out/report.html 'cornell-reference.png'
+
+if [ "$failures" != 0 ]; then
+  echo "$failures failed"
+  exit 1
+fi
+echo "all passed"

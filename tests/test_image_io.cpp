@@ -1,0 +1,232 @@
+// Image files: what is written comes back, and what fails leaves nothing behind.
+#include "core/error.h"
+#include "core/image.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
+namespace lockstep {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Gives each test an empty directory of its own.
+class ImageFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = fs::temp_directory_path() /
+                 ("lockstep-" + std::string(test->name()) + "-" + std::to_string(getpid()));
+    fs::create_directories(directory_);
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  std::string path(const std::string& name) const { return (directory_ / name).string(); }
+  size_t file_count() const {
+    return size_t(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()));
+  }
+  void cut_in_half(const std::string& name) const {
+    fs::resize_file(path(name), fs::file_size(path(name)) / 2);
+  }
+
+  fs::path directory_;
+};
+
+Image random_image(int width, int height, int channels, float scale = 1.0f) {
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<float> uniform(0.0f, scale);
+  Image image(width, height, channels);
+  for (float& v : image.pixels) v = uniform(generator);
+  return image;
+}
+
+// The message of the Error that `action` throws; empty if it throws none.
+template <typename Action>
+std::string error_of(Action action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_one_line_naming(const std::string& message, const std::string& file) {
+  EXPECT_NE(message.find(file), std::string::npos) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+TEST_F(ImageFiles, ExrKeepsEveryBit) {
+  Image image = random_image(37, 19, 3, 1e4f);
+  image.pixels[0] = std::numeric_limits<float>::quiet_NaN();
+  image.pixels[1] = -std::numeric_limits<float>::infinity();
+  image.pixels[2] = 1e-42f;
+  write_image(path("a.exr"), image);
+  const Image back = read_image(path("a.exr"));
+  ASSERT_EQ(back.width, 37);
+  ASSERT_EQ(back.height, 19);
+  ASSERT_EQ(back.pixels.size(), image.pixels.size());
+  EXPECT_EQ(std::memcmp(back.pixels.data(), image.pixels.data(), sizeof(float) * 37 * 19 * 3), 0);
+  EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(ImageFiles, HeaderKeepsSettings) {
+  const Metadata settings{{"sampler", "rcs:c=4,t=0.02"}, {"seed", "18446744073709551615"}};
+  write_image(path("a.exr"), random_image(4, 4, 3), settings);
+  EXPECT_EQ(read_metadata(path("a.exr")), settings);
+  write_image(path("a.png"), random_image(4, 4, 3), {{"sampler", "owen"}});
+  EXPECT_EQ(read_metadata(path("a.png")), (Metadata{{"sampler", "owen"}}));
+}
+
+TEST_F(ImageFiles, SameImageGivesSameFile) {
+  const Image image = random_image(8, 8, 3);
+  write_image(path("a.exr"), image, {{"seed", "1"}});
+  sleep(1);  // a time stamp in the header would differ now
+  write_image(path("b.exr"), image, {{"seed", "1"}});
+  const auto bytes = [&](const char* name) {
+    std::ifstream file(path(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_TRUE(bytes("a.exr") == bytes("b.exr"));
+}
+
+TEST_F(ImageFiles, PngKeepsAll256Values) {
+  // Every 8-bit code, decoded by the sRGB curve in double precision.
+  Image image(16, 16);
+  for (int code = 0; code < 256; ++code) {
+    const double v = code / 255.0;
+    const double linear = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+    for (int c = 0; c < 3; ++c) image.at(code % 16, code / 16)[c] = float(linear);
+  }
+  write_image(path("a.png"), image);
+  const Image back = read_image(path("a.png"));
+  ASSERT_EQ(back.pixels.size(), image.pixels.size());
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    EXPECT_NEAR(back.pixels[i], image.pixels[i], 2e-6f) << "code " << i / 3;
+  }
+}
+
+TEST_F(ImageFiles, PngClampsWhatItCannotHold) {
+  Image image(4, 1);
+  const float values[] = {-1.0f, 7.0f, std::numeric_limits<float>::quiet_NaN(), 0.5f};
+  for (int x = 0; x < 4; ++x) image.at(x, 0)[0] = values[x];
+  write_image(path("a.png"), image);
+  const Image back = read_image(path("a.png"));
+  EXPECT_EQ(back.at(0, 0)[0], 0.0f);
+  EXPECT_EQ(back.at(1, 0)[0], 1.0f);
+  EXPECT_EQ(back.at(2, 0)[0], 0.0f);
+  EXPECT_NEAR(back.at(3, 0)[0], 0.5f, 0.005f);
+}
+
+TEST_F(ImageFiles, RadianceFileIsNearlyExact) {
+  Image image(32, 32);
+  for (float& v : image.pixels) v = 123.4f;
+  write_image(path("a.hdr"), image);
+  EXPECT_NEAR(read_image(path("a.hdr")).at(3, 9)[2], 123.4f, 1.0f);
+}
+
+TEST_F(ImageFiles, JpegIsReadAsLinear) {
+  Image image(32, 32);
+  for (float& v : image.pixels) v = 0.2f;
+  write_image(path("a.jpg"), image);
+  EXPECT_NEAR(read_image(path("a.jpg")).at(16, 16)[1], 0.2f, 0.01f);
+}
+
+TEST_F(ImageFiles, OneChannelComesBackGrey) {
+  const Image weights = random_image(9, 5, 1);
+  write_image(path("w.exr"), weights);
+  const Image back = read_image(path("w.exr"));
+  ASSERT_EQ(back.channels, 3);
+  for (int x = 0; x < 9; ++x) {
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(back.at(x, 4)[c], weights.at(x, 4)[0]);
+  }
+}
+
+TEST_F(ImageFiles, AlphaIsDroppedAndColourKept) {
+  Image image(2, 1, 4);
+  image.pixels = {0.5f, 0.25f, 1.0f, 0.0f, 0.5f, 0.25f, 1.0f, 1.0f};
+  write_image(path("a.exr"), image);
+  const Image back = read_image(path("a.exr"));
+  ASSERT_EQ(back.channels, 3);
+  EXPECT_EQ(back.pixels, (std::vector<float>{0.5f, 0.25f, 1.0f, 0.5f, 0.25f, 1.0f}));
+}
+
+TEST_F(ImageFiles, WritingReplacesAFile) {
+  write_image(path("a.exr"), Image(2, 2));
+  write_image(path("a.exr"), Image(3, 3));
+  EXPECT_EQ(read_image(path("a.exr")).width, 3);
+  EXPECT_EQ(file_count(), 1u);
+}
+
+TEST_F(ImageFiles, UnreadableFilesAreErrors) {
+  const auto read = [&](const std::string& name) {
+    return error_of([&] { read_image(path(name)); });
+  };
+  expect_one_line_naming(read("missing.exr"), "missing.exr");
+  expect_one_line_naming(error_of([&] { read_metadata(path("missing.exr")); }), "missing.exr");
+
+  std::ofstream(path("text.png")) << "not an image at all\n";
+  expect_one_line_naming(read("text.png"), "text.png");
+  std::ofstream(path("empty.exr")).close();
+  expect_one_line_naming(read("empty.exr"), "empty.exr");
+  fs::create_directory(path("folder.exr"));
+  expect_one_line_naming(read("folder.exr"), "folder.exr");
+
+#ifdef __SANITIZE_ADDRESS__
+  const __lsan::ScopedDisabler ignore_leaks;  // libpng's long jump skips OpenImageIO's destructors
+#endif
+  for (const std::string name : {"half.exr", "half.png"}) {
+    write_image(path(name), random_image(64, 64, 3));
+    cut_in_half(name);
+    expect_one_line_naming(read(name), name);
+  }
+}
+
+TEST_F(ImageFiles, UnwritablePlacesAreErrorsAndLeaveNothing) {
+  const Image image = random_image(8, 8, 3);
+  const auto write = [&](const std::string& name) {
+    return error_of([&] { write_image(path(name), image); });
+  };
+  expect_one_line_naming(write("no/such/a.exr"), "a.exr");
+  expect_one_line_naming(write("a.unknown"), "a.unknown");
+  expect_one_line_naming(write("extensionless"), "extensionless");
+  expect_one_line_naming(error_of([&] { write_image(path("a.exr"), Image(0, 0)); }), "a.exr");
+  EXPECT_EQ(file_count(), 0u);
+
+  // A directory in the file's place: the rename fails after the data was written.
+  fs::create_directories(path("a.exr/inside"));
+  expect_one_line_naming(write("a.exr"), "a.exr");
+  EXPECT_EQ(file_count(), 1u);
+}
+
+// A limit on file sizes stands in for a full disk.
+TEST_F(ImageFiles, FullDiskIsAnErrorAndLeavesNothing) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{2000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string exr = error_of([&] { write_image(path("a.exr"), random_image(64, 64, 3)); });
+  const std::string png = error_of([&] { write_image(path("a.png"), random_image(64, 64, 3)); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  expect_one_line_naming(exr, "a.exr");
+  expect_one_line_naming(png, "a.png");
+  EXPECT_EQ(file_count(), 0u);
+}
+
+}  // namespace
+}  // namespace lockstep

@@ -1,0 +1,87 @@
+// Metrics against values worked out by hand.
+#include "core/error.h"
+#include "experiments/metrics.h"
+#include "experiments/squared_error.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace lockstep {
+namespace {
+
+Image constant(int width, int height, float value) {
+  Image image(width, height, 3);
+  for (float& v : image.pixels) v = value;
+  return image;
+}
+
+TEST(Metrics, RmseIsTheRootOfTheMeanSquare) {
+  const Image reference = constant(2, 1, 1.0f);
+  Image test = reference;
+  test.at(0, 0)[0] = 4.0f;  // one of six values is off by 3: sqrt(9 / 6)
+  EXPECT_NEAR(rmse(reference, test), std::sqrt(1.5), 1e-12);
+}
+
+TEST(Metrics, RelmseDividesByTheReference) {
+  Image reference = constant(2, 1, 0.0f);
+  for (int c = 0; c < 3; ++c) reference.at(1, 0)[c] = 2.0f;
+  Image test = reference;
+  test.at(0, 0)[1] = 0.1f;  // 0.01 / (0 + 0.01) = 1
+  test.at(1, 0)[2] = 4.0f;  // 4 / (4 + 0.01)
+  EXPECT_NEAR(relmse(reference, test), (1.0 + 4.0 / 4.01) / 6.0, 1e-7);
+}
+
+TEST(Metrics, TrimmingLeavesOutOnePixelInAThousand) {
+  const Image reference = constant(50, 40, 0.0f);  // 2000 pixels: two are left out
+  Image test = constant(50, 40, 0.1f);             // relMSE 1 everywhere
+  test.at(3, 3)[0] = 100.0f;
+  test.at(7, 9)[1] = 50.0f;
+  EXPECT_NEAR(relmse_trimmed(reference, test), 1.0, 1e-6);
+  EXPECT_GT(relmse(reference, test), 10.0);
+}
+
+TEST(Metrics, TrimmingASmallImageLeavesOutNothing) {
+  const Image reference = constant(3, 3, 0.5f);
+  Image test = reference;
+  test.at(0, 0)[0] = 9.0f;
+  EXPECT_DOUBLE_EQ(relmse_trimmed(reference, test), relmse(reference, test));
+}
+
+TEST(Metrics, EqualImagesHaveNoError) {
+  const Image image = constant(4, 4, 0.3f);
+  for (double value : evaluate_metrics(image, image)) EXPECT_EQ(value, 0.0);
+}
+
+TEST(Metrics, TableHasTheKeysThatScriptsReadInOrder) {
+  ASSERT_GE(metrics().size(), 3u);
+  EXPECT_EQ(metrics()[0].name, "rmse");
+  EXPECT_EQ(metrics()[1].name, "relmse");
+  EXPECT_EQ(metrics()[2].name, "relmse_trimmed");
+}
+
+TEST(Metrics, DifferentSizesAreNamed) {
+  try {
+    evaluate_metrics(constant(4, 2, 0.0f), constant(3, 2, 0.0f), "a.exr", "b.exr");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("a.exr is 4x2"), std::string::npos) << message;
+    EXPECT_NE(message.find("b.exr is 3x2"), std::string::npos) << message;
+  }
+}
+
+TEST(Metrics, ValuesThatAreNotFiniteAreLocated) {
+  Image test = constant(4, 2, 0.0f);
+  test.at(3, 1)[2] = std::numeric_limits<float>::quiet_NaN();
+  try {
+    evaluate_metrics(constant(4, 2, 0.0f), test, "a.exr", "b.exr");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("b.exr: pixel (3, 1)"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace lockstep

@@ -1,0 +1,94 @@
+// Summary statistics and equal-time interpolation against values worked out by hand.
+#include "experiments/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace lockstep {
+namespace {
+
+TEST(Statistics, QuantilesInterpolateBetweenOrderStatistics) {
+  EXPECT_DOUBLE_EQ(quantile({3.0}, 0.95), 3.0);
+  EXPECT_DOUBLE_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.5);
+  EXPECT_DOUBLE_EQ(quantile({0.0, 10.0}, 0.05), 0.5);
+  const Spread spread = spread_of({5.0, 1.0, 2.0, 3.0, 4.0});
+  EXPECT_DOUBLE_EQ(spread.median, 3.0);
+  EXPECT_DOUBLE_EQ(spread.p5, 1.2);
+  EXPECT_DOUBLE_EQ(spread.p95, 4.8);
+}
+
+TEST(Statistics, CurvesAreStraightInLogTimeAndLogError) {
+  // error = 8 / time: 2 at time 4, whatever the points' order.
+  const std::optional<double> error = error_at({{16.0, 0.5}, {1.0, 8.0}}, 4.0);
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(*error, 2.0, 1e-12);
+}
+
+TEST(Statistics, CurvesGoThroughTheirPoints) {
+  const std::vector<CurvePoint> curve = {{1.0, 8.0}, {2.0, 5.0}, {16.0, 0.5}};
+  for (const CurvePoint& point : curve) {
+    ASSERT_TRUE(error_at(curve, point.time));
+    EXPECT_NEAR(*error_at(curve, point.time), point.error, 1e-12);
+  }
+}
+
+TEST(Statistics, NothingIsExtrapolated) {
+  const std::vector<CurvePoint> curve = {{1.0, 8.0}, {16.0, 0.5}};
+  EXPECT_FALSE(error_at(curve, 0.999));
+  EXPECT_FALSE(error_at(curve, 16.001));
+  EXPECT_FALSE(error_at({}, 1.0));
+  EXPECT_TRUE(error_at({{2.0, 3.0}}, 2.0));
+  EXPECT_FALSE(error_at({{2.0, 3.0}}, 2.1));
+}
+
+TEST(Statistics, AnErrorOfZeroIsReachedInAStraightLine) {
+  EXPECT_NEAR(*error_at({{1.0, 2.0}, {4.0, 0.0}}, 2.0), 1.0, 1e-12);
+}
+
+TEST(Statistics, CommonTimesAreTheIntersection) {
+  const auto range = common_times({{{1.0, 0.0}, {8.0, 0.0}}, {{10.0, 0.0}, {2.0, 0.0}}});
+  ASSERT_TRUE(range);
+  EXPECT_DOUBLE_EQ(range->low, 2.0);
+  EXPECT_DOUBLE_EQ(range->high, 8.0);
+  EXPECT_FALSE(common_times({{{1.0, 0.0}}, {{2.0, 0.0}}}));
+  EXPECT_FALSE(common_times({{{1.0, 0.0}}, {}}));
+  EXPECT_FALSE(common_times({}));
+}
+
+TEST(Statistics, BudgetsAreQuartersWithinTheRange) {
+  const std::vector<double> expected = {8.0, 2.0};
+  EXPECT_EQ(time_budgets({2.0, 8.0}), expected);
+  EXPECT_EQ(time_budgets({8.0, 8.0}).size(), 1u);
+}
+
+TEST(Statistics, RatioIsTheGeometricMeanOverPairs) {
+  const std::optional<Ratio> ratio = paired_ratio({1.0, 8.0}, {2.0, 4.0});  // 1/2 and 2
+  ASSERT_TRUE(ratio);
+  EXPECT_NEAR(ratio->value, 1.0, 1e-12);
+  EXPECT_FALSE(ratio->low) << "two pairs give no interval";
+  EXPECT_FALSE(paired_ratio({0.0}, {1.0}));
+  EXPECT_FALSE(paired_ratio({}, {}));
+}
+
+TEST(Statistics, IntervalHoldsTheRatioAndIsReproducible) {
+  const std::vector<double> errors = {1.0, 1.3, 0.8, 1.1, 0.9}, base = {2.0, 2.0, 2.0, 2.0, 2.0};
+  const std::optional<Ratio> a = paired_ratio(errors, base), b = paired_ratio(errors, base);
+  ASSERT_TRUE(a && a->low && a->high);
+  EXPECT_LT(*a->low, a->value);
+  EXPECT_GT(*a->high, a->value);
+  EXPECT_GE(*a->low, 0.4);  // no resample leaves the range of the ratios
+  EXPECT_LE(*a->high, 0.65);
+  EXPECT_EQ(*a->low, *b->low);
+  EXPECT_EQ(*a->high, *b->high);
+}
+
+TEST(Statistics, PairsWithOneRatioHaveNoSpread) {
+  const std::optional<Ratio> ratio = paired_ratio({1.0, 2.0, 3.0, 4.0}, {2.0, 4.0, 6.0, 8.0});
+  ASSERT_TRUE(ratio && ratio->low);
+  EXPECT_NEAR(*ratio->low, 0.5, 1e-12);
+  EXPECT_NEAR(*ratio->high, 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace lockstep
