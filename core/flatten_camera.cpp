@@ -12,8 +12,10 @@ namespace {
 // Value of the filter at x pixels from the centre, not normalised.
 double filter_value(const PixelFilter& filter, double radius, double x) {
   switch (filter.kind) {
-    case PixelFilter::Kind::Box: return 1.0;
-    case PixelFilter::Kind::Triangle: return std::max(0.0, radius - std::abs(x));
+    case PixelFilter::Kind::Box:
+      return 1.0;
+    case PixelFilter::Kind::Triangle:
+      return std::max(0.0, radius - std::abs(x));
     case PixelFilter::Kind::Gaussian: {
       // As pbrt: lowered so that it reaches zero at the radius.
       const double s = 2.0 * double(filter.sigma) * double(filter.sigma);
@@ -49,8 +51,7 @@ std::vector<float> inverse_distribution(const PixelFilter& filter, double radius
 
 }  // namespace
 
-void flatten_camera(const CameraDescription& camera, const FilmDescription& film,
-                    FlatScene& flat) {
+void flatten_camera(const CameraDescription& camera, const FilmDescription& film, FlatScene& flat) {
   CameraData& c = flat.camera;
   c.width = film.width;
   c.height = film.height;

@@ -33,8 +33,8 @@ Light flat_light(LightKind kind, glm::vec3 corner, glm::vec3 e1, glm::vec3 e2,
   l.area = kind == LightKind::Triangle ? 0.5f * parallelogram : parallelogram;
   if (parallelogram > 0.0f) l.normal = n / parallelogram;
   l.side = emission.two_sided ? 0.0f : 1.0f;
-  l.power = luminance(emission.radiance) * l.area * (emission.two_sided ? 2.0f : 1.0f) *
-            glm::pi<float>();
+  l.power =
+      luminance(emission.radiance) * l.area * (emission.two_sided ? 2.0f : 1.0f) * glm::pi<float>();
   return l;
 }
 

@@ -17,7 +17,9 @@ struct Image {
   Image() = default;
   Image(int w, int h, int c = 3)
       : width(w), height(h), channels(c), pixels(size_t(w) * size_t(h) * size_t(c), 0.0f) {}
-  float* at(int x, int y) { return &pixels[(size_t(y) * size_t(width) + size_t(x)) * size_t(channels)]; }
+  float* at(int x, int y) {
+    return &pixels[(size_t(y) * size_t(width) + size_t(x)) * size_t(channels)];
+  }
   const float* at(int x, int y) const {
     return &pixels[(size_t(y) * size_t(width) + size_t(x)) * size_t(channels)];
   }

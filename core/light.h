@@ -104,8 +104,8 @@ LOCKSTEP_INLINE LightSample<V> sample_sphere_light(const LightRow<V>& light, con
   const Vec3<V> to = fma(radius, n, to_centre);
   const V inside_distance = length(to);
   const Vec3<V> inside_wi = to * (V(1.0f) / max(inside_distance, V(1e-30f)));
-  const V inside_pdf = solid_angle_pdf(inside_distance, abs(dot(n, inside_wi)),
-                                       V(4.0f * pi) * radius * radius);
+  const V inside_pdf =
+      solid_angle_pdf(inside_distance, abs(dot(n, inside_wi)), V(4.0f * pi) * radius * radius);
 
   const V side_seen = select(outside, V(1.0f), V(-1.0f));
   const V pdf = light.probability * select(outside, uniform_cone_pdf(one_minus_cos), inside_pdf);

@@ -37,7 +37,7 @@ class Scene {
   Scene(Scene&&) noexcept;
 
   const SceneDescription& description() const;  // its shapes are moved out: see data()
-  const SceneData& data() const;  // for kernels
+  const SceneData& data() const;                // for kernels
   const Features& features() const;
   std::size_t triangle_count() const;
 

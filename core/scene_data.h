@@ -60,7 +60,7 @@ struct CameraData {
 };
 
 struct SceneData {
-  void* embree_scene = nullptr;  // RTCScene
+  void* embree_scene = nullptr;             // RTCScene
   const std::int32_t* triangles = nullptr;  // three vertex indices each
   const float* normals = nullptr;           // per vertex
   const std::int32_t* light_of_primitive = nullptr;

@@ -59,8 +59,8 @@ LOCKSTEP_INLINE R apply_lanes(F f, A... a) {
   if constexpr (R::native) {
     return R::from((typename R::Storage)f(a.s...));
   } else {
-    return R::from({apply_lanes<typename R::Half>(f, a.s.lo...),
-                    apply_lanes<typename R::Half>(f, a.s.hi...)});
+    return R::from(
+        {apply_lanes<typename R::Half>(f, a.s.lo...), apply_lanes<typename R::Half>(f, a.s.hi...)});
   }
 }
 
@@ -72,8 +72,8 @@ template <class T, int W>
 struct Lanes {
   static constexpr bool native = W <= native_lanes;
   using Half = Lanes<T, W / 2>;
-  using Storage =
-      typename std::conditional_t<native, NativeVector<T, W>, std::type_identity<LanePair<Half>>>::type;
+  using Storage = typename std::conditional_t<native, NativeVector<T, W>,
+                                              std::type_identity<LanePair<Half>>>::type;
   Storage s;
 
   Lanes() = default;
@@ -97,10 +97,10 @@ struct Lanes {
     }
   }
 
-#define LOCKSTEP_BINARY(op)                                                               \
-  LOCKSTEP_INLINE friend Lanes operator op(Lanes a, Lanes b) {                            \
+#define LOCKSTEP_BINARY(op)                                                                 \
+  LOCKSTEP_INLINE friend Lanes operator op(Lanes a, Lanes b) {                              \
     return apply_lanes<Lanes>([](auto x, auto y) LOCKSTEP_LAMBDA { return x op y; }, a, b); \
-  }                                                                                       \
+  }                                                                                         \
   LOCKSTEP_INLINE Lanes& operator op##=(Lanes b) { return *this = *this op b; }
   LOCKSTEP_BINARY(+)
   LOCKSTEP_BINARY(-)
@@ -111,8 +111,8 @@ struct Lanes {
   LOCKSTEP_BINARY(^)
 #undef LOCKSTEP_BINARY
 
-#define LOCKSTEP_COMPARE(op)                                                                 \
-  LOCKSTEP_INLINE friend LaneMask<W> operator op(Lanes a, Lanes b) {                         \
+#define LOCKSTEP_COMPARE(op)                                                                      \
+  LOCKSTEP_INLINE friend LaneMask<W> operator op(Lanes a, Lanes b) {                              \
     return apply_lanes<LaneMask<W>>([](auto x, auto y) LOCKSTEP_LAMBDA { return x op y; }, a, b); \
   }
   LOCKSTEP_COMPARE(<)

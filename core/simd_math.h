@@ -17,10 +17,11 @@ struct SinCos {
 template <class V>
 LOCKSTEP_INLINE SinCos<V> sincos_eighth(V x) {
   const V x2 = x * x;
-  const V s = fma(fma(fma(V(-1.9515295891e-4f), x2, V(8.3321608736e-3f)), x2,
-                      V(-1.6666654611e-1f)), x2 * x, x);
+  const V s = fma(fma(fma(V(-1.9515295891e-4f), x2, V(8.3321608736e-3f)), x2, V(-1.6666654611e-1f)),
+                  x2 * x, x);
   const V c = fma(fma(fma(V(2.443315711809948e-5f), x2, V(-1.388731625493765e-3f)), x2,
-                      V(4.166664568298827e-2f)), x2 * x2, fma(V(-0.5f), x2, V(1.0f)));
+                      V(4.166664568298827e-2f)),
+                  x2 * x2, fma(V(-0.5f), x2, V(1.0f)));
   return {s, c};
 }
 

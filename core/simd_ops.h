@@ -91,15 +91,12 @@ LOCKSTEP_INLINE int count(M m) {
 
 // m ? a : b, lane by lane.
 template <class T>
-  requires std::is_arithmetic_v<T>
-LOCKSTEP_INLINE T select(bool m, T a, T b) {
-  return m ? a : b;
-}
+requires std::is_arithmetic_v<T> LOCKSTEP_INLINE T select(bool m, T a, T b) { return m ? a : b; }
 LOCKSTEP_INLINE bool select(bool m, bool a, bool b) { return m ? a : b; }
 template <class T, int W>
 LOCKSTEP_INLINE Lanes<T, W> select(LaneMask<W> m, Lanes<T, W> a, Lanes<T, W> b) {
-  return apply_lanes<Lanes<T, W>>(
-      [](auto k, auto x, auto y) LOCKSTEP_LAMBDA { return k ? x : y; }, m, a, b);
+  return apply_lanes<Lanes<T, W>>([](auto k, auto x, auto y) LOCKSTEP_LAMBDA { return k ? x : y; },
+                                  m, a, b);
 }
 
 // Arithmetic ----------------------------------------------------------------------------------
@@ -121,20 +118,20 @@ LOCKSTEP_INLINE float fma(float a, float b, float c) {
 }
 
 #if defined(__AVX512F__)
-#define LOCKSTEP_FOR_REGISTER(x, name, suffix, ...)                   \
-  if constexpr (sizeof(x) == 64) {                                    \
-    return decltype(x)(_mm512_##name##_##suffix(__VA_ARGS__));        \
-  } else if constexpr (sizeof(x) == 32) {                             \
-    return decltype(x)(_mm256_##name##_##suffix(__VA_ARGS__));        \
-  } else {                                                            \
-    return decltype(x)(_mm_##name##_##suffix(__VA_ARGS__));           \
+#define LOCKSTEP_FOR_REGISTER(x, name, suffix, ...)            \
+  if constexpr (sizeof(x) == 64) {                             \
+    return decltype(x)(_mm512_##name##_##suffix(__VA_ARGS__)); \
+  } else if constexpr (sizeof(x) == 32) {                      \
+    return decltype(x)(_mm256_##name##_##suffix(__VA_ARGS__)); \
+  } else {                                                     \
+    return decltype(x)(_mm_##name##_##suffix(__VA_ARGS__));    \
   }
 #elif defined(__AVX__)
-#define LOCKSTEP_FOR_REGISTER(x, name, suffix, ...)                   \
-  if constexpr (sizeof(x) == 32) {                                    \
-    return decltype(x)(_mm256_##name##_##suffix(__VA_ARGS__));        \
-  } else {                                                            \
-    return decltype(x)(_mm_##name##_##suffix(__VA_ARGS__));           \
+#define LOCKSTEP_FOR_REGISTER(x, name, suffix, ...)            \
+  if constexpr (sizeof(x) == 32) {                             \
+    return decltype(x)(_mm256_##name##_##suffix(__VA_ARGS__)); \
+  } else {                                                     \
+    return decltype(x)(_mm_##name##_##suffix(__VA_ARGS__));    \
   }
 #else
 #define LOCKSTEP_FOR_REGISTER(x, name, suffix, ...) \
@@ -245,7 +242,7 @@ LOCKSTEP_INLINE Lanes<T, W> gather(const T* base, Lanes<std::int32_t, W> index) 
         } else
 #endif
 #if defined(__AVX2__)
-        if constexpr (sizeof(i) == 32) {
+            if constexpr (sizeof(i) == 32) {
           return (Target)_mm256_i32gather_epi32((const int*)base, (__m256i)i, 4);
         } else
 #endif
@@ -261,8 +258,7 @@ LOCKSTEP_INLINE Lanes<T, W> gather(const T* base, Lanes<std::int32_t, W> index) 
 // Writes the lanes where m is set, in order and without gaps; returns how many. May write
 // width_of<V> elements in all, whatever the mask: leave room behind the end.
 template <class T>
-  requires std::is_arithmetic_v<T>
-LOCKSTEP_INLINE int compress_store(T* p, T v, bool m) {
+requires std::is_arithmetic_v<T> LOCKSTEP_INLINE int compress_store(T* p, T v, bool m) {
   *p = v;
   return m;
 }

@@ -80,6 +80,11 @@ SceneComparison describe(const Scene& scene, const CompareSettings& settings,
   return result;
 }
 
+// A mistake in any scene is found before files are touched and hours are spent on the others.
+void check_scenes(const CompareSettings& settings) {
+  for (const std::string& scene : settings.scenes) read_scene(scene);
+}
+
 std::string in_directory(const CompareSettings& settings, const std::string& file) {
   return (fs::path(settings.directory) / file).string();
 }
@@ -191,6 +196,7 @@ bool run_stage(Stage& stage, double reference_work, Clock::time_point deadline) 
 
 Comparison compare(const CompareSettings& settings, const CompareProgress& progress) {
   check_settings(settings);
+  check_scenes(settings);
   make_output_directory(settings.directory);
   ErrorsCsv csv(settings.directory);
   const Clock::time_point deadline =

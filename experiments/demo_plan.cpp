@@ -8,15 +8,30 @@ namespace {
 
 constexpr int kFewestSeeds = 4;
 constexpr int kMostSeeds = 16;
-constexpr double kScales[] = {1.0, 0.75, 0.5, 0.375, 0.25};  // of the image's sides
 
 struct Samples {
   std::vector<int> rungs;
   int reference_spp;
 };
 
-DemoPlan plan_at(const PathCost& cost, glm::ivec2 full, double scale, const Samples& samples,
-                 int samplers, double seconds) {
+// A size of comparison: a factor on the image's sides, and how many samples.
+struct Candidate {
+  double scale;
+  Samples samples;
+};
+
+// Best first. Small images and few samples both make a poor show: they shrink in turn.
+std::vector<Candidate> candidates() {
+  const Samples many{{4, 8, 16, 32, 64}, 1024};
+  const Samples some{{4, 8, 16, 32}, 512};
+  const Samples few{{4, 8, 16}, 256};
+  return {{1.0, many}, {0.75, many}, {0.75, some}, {0.5, many},         {0.5, some},
+          {0.5, few},  {0.375, few}, {0.25, few},  {0.25, {{4, 8}, 64}}};
+}
+
+DemoPlan plan_at(const PathCost& cost, glm::ivec2 full, const Candidate& candidate, int samplers,
+                 double seconds) {
+  const auto& [scale, samples] = candidate;
   DemoPlan plan;
   plan.resolution = {std::max(16, int(full.x * scale)), std::max(16, int(full.y * scale))};
   plan.rungs = samples.rungs;
@@ -34,13 +49,10 @@ DemoPlan plan_at(const PathCost& cost, glm::ivec2 full, double scale, const Samp
 }  // namespace
 
 DemoPlan plan_demo(const PathCost& cost, glm::ivec2 full, int samplers, double seconds) {
-  const Samples choices[] = {{{4, 8, 16, 32, 64}, 1024}, {{4, 8, 16}, 256}, {{4, 8}, 64}};
   DemoPlan plan;
-  for (const Samples& samples : choices) {
-    for (double scale : kScales) {
-      plan = plan_at(cost, full, scale, samples, samplers, seconds);
-      if (plan.seconds <= seconds) return plan;
-    }
+  for (const Candidate& candidate : candidates()) {
+    plan = plan_at(cost, full, candidate, samplers, seconds);
+    if (plan.seconds <= seconds) break;
   }
   return plan;
 }

@@ -21,8 +21,8 @@ struct DemoPlan {
   double seconds = 0.0;  // what it should take
 };
 
-// The largest image, up to `full`, for which all rungs and at least four seeds fit into `seconds`;
-// then as many seeds as fit. On a machine too slow even for the smallest image, fewer samples.
+// The largest image, up to `full`, and the most samples for which at least four seeds fit into
+// `seconds`; then as many seeds as fit.
 DemoPlan plan_demo(const PathCost& cost, glm::ivec2 full, int samplers, double seconds);
 
 }  // namespace lockstep

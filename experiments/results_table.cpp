@@ -90,6 +90,9 @@ std::string scene_header(const Json& scene) {
 
 std::string results_table(const Json& summary) {
   std::string text;
+  if (!summary["complete"].get<bool>()) {
+    text += "\nStopped before all seeds were rendered: what follows was measured until then.\n";
+  }
   for (const Json& scene : summary["scenes"]) {
     text += scene_header(scene);
     const Json& budgets = scene["equal_time"]["budgets"];

@@ -1,20 +1,25 @@
 // A render's film on disk, so that an interrupted or shorter render can be continued.
 #pragma once
 
-#include "packets/film.h"
+#include "packets/pass.h"
 
 #include <string>
-#include <vector>
 
 namespace lockstep {
 
-// Restores films from `path` if it is there and was saved under the same key, which states all
-// settings that the samples depend on. Returns false where there is no such file.
-// Throws Error where the key differs or the file is damaged.
-bool load_checkpoint(const std::string& path, const std::string& key, std::vector<Film*> films);
+// All that a render has computed: the films of the pilot and of the image, and what they cost.
+struct RenderState {
+  Film pilot, image;
+  PassTotals totals;
+  double wall_seconds = 0.0;
+};
 
-// Writes the films beside `path` and renames them into place. Throws Error.
-void save_checkpoint(const std::string& path, const std::string& key,
-                     const std::vector<const Film*>& films);
+// Restores `state`, whose films have their size already, if `path` is there and was saved under the
+// same key, which states all settings that the samples depend on. Returns false where there is no
+// such file. Throws Error where the key differs or the file is damaged.
+bool load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
+
+// Writes `state` beside `path` and renames it into place. Throws Error.
+void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state);
 
 }  // namespace lockstep

@@ -23,8 +23,10 @@ constexpr const Kernel* kernels[] = {
 bool cpu_runs(Isa isa) {
   __builtin_cpu_init();
   switch (isa) {
-    case Isa::Sse4: return __builtin_cpu_supports("sse4.2");
-    case Isa::Avx2: return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    case Isa::Sse4:
+      return __builtin_cpu_supports("sse4.2");
+    case Isa::Avx2:
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case Isa::Avx512:
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
              __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
@@ -60,15 +62,14 @@ Isa choose_isa(std::string_view text) {
   for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
     if (name(isa) != text) continue;
     if (cpu_runs(isa)) return isa;
-    throw Error(fmt::format("this CPU does not run {}{}; it runs{}", text, from, available_names()));
+    throw Error(
+        fmt::format("this CPU does not run {}{}; it runs{}", text, from, available_names()));
   }
-  throw UsageError(fmt::format("unknown instruction set '{}'{}; choose from auto, sse4, avx2, avx512",
-                               text, from));
+  throw UsageError(fmt::format(
+      "unknown instruction set '{}'{}; choose from auto, sse4, avx2, avx512", text, from));
 }
 
-std::string embree_isa(Isa isa) {
-  return isa == Isa::Sse4 ? "sse4.2" : std::string(name(isa));
-}
+std::string embree_isa(Isa isa) { return isa == Isa::Sse4 ? "sse4.2" : std::string(name(isa)); }
 
 int default_width(Isa isa) { return isa == Isa::Sse4 ? 4 : isa == Isa::Avx2 ? 8 : 16; }
 

@@ -8,7 +8,8 @@ template <class F>
 Image make_image(const Film& film, F f) {
   Image image(film.width, film.height);
   for (std::size_t pixel = 0; pixel < film.count.size(); ++pixel) {
-    for (std::size_t c = 0; c < 3; ++c) image.pixels[pixel * 3 + c] = float(f(pixel * 3 + c, pixel));
+    for (std::size_t c = 0; c < 3; ++c)
+      image.pixels[pixel * 3 + c] = float(f(pixel * 3 + c, pixel));
   }
   return image;
 }

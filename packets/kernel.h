@@ -18,8 +18,8 @@ struct PathSettings {
   int depth = 5;
   int roulette_depth = 5;
   LaneLayout lanes;
-  // Embree's coherent flag on bounce rays. It decides how rays are traced, never what they hit.
-  bool coherent_bounces = false;
+  // Embree's coherent flag on shadow rays. It decides how rays are traced, never what they hit.
+  bool coherent_shadows = false;
 };
 
 // Sums over the samples of each pixel, in double: 2^24 samples of 1 would stop growing in float.

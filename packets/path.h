@@ -100,9 +100,9 @@ void add_emission(const ShadeContext& c) {
     const Mask<W> emitting = hit & !(first < I(0));
     if (none(emitting)) continue;
     const I entry = select(emitting, first + load<I>(hits.primitive + i), I(0));
-    const Emitted<V> e = hit_light(scene, gather(scene.light_of_primitive, entry),
-                                   load3<V>(rays.origin, i), load3<V>(rays.direction, i),
-                                   load<V>(hits.distance + i));
+    const Emitted<V> e =
+        hit_light(scene, gather(scene.light_of_primitive, entry), load3<V>(rays.origin, i),
+                  load3<V>(rays.direction, i), load<V>(hits.distance + i));
     add(i, e.radiance, e.pdf, emitting & (max_component(e.radiance) > V(0.0f)));
   }
 }
@@ -151,7 +151,9 @@ inline void deposit(const TileJob& job, const PathTable& paths, TileCounts& coun
   }
 }
 
-// One wave: at most wave_paths paths, from camera to film.
+// One wave: at most wave_paths paths, from camera to film. Camera rays are coherent; bounce rays
+// are traced as incoherent even where all lanes share their random numbers: the coherent flag gains
+// a third in a box of flat walls and loses as much on fine geometry, whose normals scatter them.
 template <int W>
 void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
   list_paths(job, wave.paths);
@@ -159,7 +161,7 @@ void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
   ShadeContext c{job.scene, &job, &wave, 0, false};
   for (c.bounce = 0; c.rays().count > 0; ++c.bounce) {
     const bool camera = c.bounce == 0;
-    intersect<W>(*job.scene, camera || job.path.coherent_bounces, c.rays(), wave.hits, counts);
+    intersect<W>(*job.scene, camera, c.rays(), wave.hits, counts);
     (camera ? counts.rays.camera : counts.rays.bounce) += std::uint64_t(c.rays().count);
     if (job.scene->lights.count > 0) add_emission<W>(c);
     if (c.bounce >= job.path.depth) break;
@@ -169,7 +171,7 @@ void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
     shade_kind<W, MaterialKind::Diffuse>(c);
     shade_kind<W, MaterialKind::Conductor>(c);
     shade_kind<W, MaterialKind::Coated>(c);
-    trace_shadows<W>(*job.scene, true, wave.shadows, wave.paths, counts);
+    trace_shadows<W>(*job.scene, job.path.coherent_shadows, wave.shadows, wave.paths, counts);
   }
   deposit(job, wave.paths, counts);
 }

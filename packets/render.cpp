@@ -18,11 +18,6 @@
 namespace lockstep {
 namespace {
 
-// Films of a render: the pilot R, where the sampler has one, and the image C.
-struct Films {
-  Film pilot, image;
-};
-
 // How many samples go to the pilot.
 int pilot_samples(const SamplerSpec& sampler, const RenderSettings& settings) {
   if (sampler.weight_source != WeightSource::Map) return 0;
@@ -36,9 +31,11 @@ std::uint32_t stream_seed(std::uint32_t seed, std::uint32_t stream) {
   return pcg3d(seed, stream, 0x1ec5u).x;
 }
 
-SamplerState pilot_state(const RenderSettings& settings) {
+// The pilot: every pixel has its own sequence, of the kind that the image's pixels share.
+SamplerState pilot_state(const SamplerSpec& sampler, const RenderSettings& settings) {
   SamplerState state;
   state.seed = stream_seed(settings.seed, 1);
+  state.sequence = sampler.sequence;
   return state;
 }
 
@@ -58,9 +55,9 @@ LaneLayout choose_lanes(const RenderSettings& settings) {
   return settings.lanes_auto ? LaneLayout{} : settings.lanes;
 }
 
-// The flag pays on bounce rays only while lanes stay close together: up to w = 1/16 or so, measured
-// on scenes of 66k to 4M triangles; beyond, it costs up to half the speed.
-bool coherent_bounces(const SamplerState& state, double weight) {
+// The flag pays on shadow rays while lanes aim at nearly the same point of a light; beyond, it
+// costs up to a quarter of the speed.
+bool coherent_shadows(const SamplerState& state, double weight) {
   return state.shared && weight <= 1.0 / 16.0;
 }
 
@@ -68,10 +65,14 @@ class Renderer {
  public:
   Renderer(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
            const Progress& progress)
-      : scene_(scene), sampler_(sampler), settings_(settings), progress_(progress),
-        start_(wall_seconds()), saved_(start_) {
+      : scene_(scene),
+        sampler_(sampler),
+        settings_(settings),
+        progress_(progress),
+        start_(wall_seconds()),
+        counted_(start_) {
     const FilmDescription& film = scene.description().film;
-    films_ = {Film(film.width, film.height), Film(film.width, film.height)};
+    state_.pilot = state_.image = Film(film.width, film.height);
     pass_.kernel = &find_kernel(settings.isa, settings.width);
     pass_.scene = &scene.data();
     pass_.path = {settings.depth, settings.roulette_depth, choose_lanes(settings)};
@@ -88,42 +89,40 @@ class Renderer {
     if (pilot_spp_ > 0) {
       render_pilot();
       const double before = thread_cpu_seconds();
-      result.weights =
-          make_weights(mean(films_.pilot), {sampler_.c, sampler_.t, sampler_.filter});
+      result.weights = make_weights(mean(state_.pilot), {sampler_.c, sampler_.t, sampler_.filter});
       weight = mean_weight(*result.weights);
-      totals_.cpu_seconds += thread_cpu_seconds() - before;
+      state_.totals.cpu_seconds += thread_cpu_seconds() - before;
       state.weights = result.weights->pixels.data();
     }
     pass_.sampler = &state;
-    pass_.path.coherent_bounces = coherent_bounces(state, weight);
+    pass_.path.coherent_shadows = coherent_shadows(state, weight);
     if (settings_.time_seconds > 0.0) {
       render_for_time();
     } else {
-      render_to(films_.image, std::uint32_t(settings_.spp - pilot_spp_));
+      render_to(state_.image, std::uint32_t(settings_.spp - pilot_spp_));
     }
-    save(true);
     result.image = combine(result.weights);
     result.stats = stats(weight);
     return result;
   }
 
  private:
-  std::uint32_t samples_done() const { return films_.pilot.samples + films_.image.samples; }
+  std::uint32_t samples_done() const { return state_.pilot.samples + state_.image.samples; }
 
   void render_pilot() {
-    const SamplerState state = pilot_state(settings_);
+    const SamplerState state = pilot_state(sampler_, settings_);
     pass_.sampler = &state;
-    render_to(films_.pilot, std::uint32_t(pilot_spp_));
+    render_to(state_.pilot, std::uint32_t(pilot_spp_));
   }
 
-  // One pass where nothing has to be saved on the way; else passes of about ten seconds.
+  // One pass where nothing has to be kept on the way; else passes of up to ten seconds or so, each
+  // saved as it ends: a pass that is cut short leaves the film of those before it on disk.
   void render_to(Film& film, std::uint32_t samples) {
     std::uint32_t chunk = settings_.resume_file.empty() ? samples : 1;
     while (film.samples < samples) {
       const double before = wall_seconds();
-      run(film, std::min(chunk, samples - film.samples));
-      if (wall_seconds() - before < 10.0) chunk *= 2;
-      save(false);
+      run_samples(film, std::min(chunk, samples - film.samples));
+      if (wall_seconds() - before < 5.0) chunk *= 2;
     }
   }
 
@@ -133,8 +132,7 @@ class Renderer {
     std::uint32_t chunk = 1;
     while (true) {
       const double before = wall_seconds();
-      run(films_.image, chunk);
-      save(false);
+      run_samples(state_.image, chunk);
       const double now = wall_seconds();
       const double per_sample = (now - before) / chunk;
       const double left = settings_.time_seconds - (now - start_);
@@ -143,10 +141,10 @@ class Renderer {
     }
   }
 
-  void run(Film& film, std::uint32_t samples) {
+  void run_samples(Film& film, std::uint32_t samples) {
     pass_.samples = samples;
     const double done = double(samples_done());
-    const bool finished = run_pass(pass_, film, totals_, [&](double share) {
+    const bool finished = run_pass(pass_, film, state_.totals, [&](double share) {
       if (!progress_) return true;
       const double fraction = settings_.time_seconds > 0.0
                                   ? (wall_seconds() - start_) / settings_.time_seconds
@@ -154,6 +152,7 @@ class Renderer {
       return progress_(std::min(fraction, 1.0));
     });
     if (!finished) throw Cancelled();
+    save();
   }
 
   // Everything that a sample's value depends on.
@@ -165,28 +164,28 @@ class Renderer {
                        name(settings_.isa));
   }
   void restore() {
-    if (settings_.resume_file.empty()) return;
-    load_checkpoint(settings_.resume_file, key(), {&films_.pilot, &films_.image});
+    if (!settings_.resume_file.empty()) load_checkpoint(settings_.resume_file, key(), state_);
   }
-  void save(bool finished) {
+  void save() {
     if (settings_.resume_file.empty()) return;
-    if (!finished && wall_seconds() - saved_ < 5.0) return;
-    save_checkpoint(settings_.resume_file, key(), {&films_.pilot, &films_.image});
-    saved_ = wall_seconds();
+    const double now = wall_seconds();
+    state_.wall_seconds += now - counted_;
+    counted_ = now;
+    save_checkpoint(settings_.resume_file, key(), state_);
   }
 
   Image combine(const std::optional<Image>& weights) const {
-    if (weights && sampler_.combine == Combine::Weight && films_.image.samples > 0) {
-      return interpolate(films_.pilot, films_.image, *weights);
+    if (weights && sampler_.combine == Combine::Weight && state_.image.samples > 0) {
+      return interpolate(state_.pilot, state_.image, *weights);
     }
-    return mean(films_.pilot, films_.image);
+    return mean(state_.pilot, state_.image);
   }
 
   RenderStats stats(double weight) const {
-    const TileCounts& counts = totals_.counts;
+    const TileCounts& counts = state_.totals.counts;
     RenderStats s;
-    s.wall_seconds = wall_seconds() - start_;
-    s.cpu_seconds = totals_.cpu_seconds;
+    s.wall_seconds = state_.wall_seconds + wall_seconds() - counted_;
+    s.cpu_seconds = state_.totals.cpu_seconds;
     s.paths = counts.rays.camera;
     s.rays = counts.rays;
     s.width = pass_.kernel->width;
@@ -208,10 +207,10 @@ class Renderer {
   const SamplerSpec& sampler_;
   const RenderSettings& settings_;
   const Progress& progress_;
-  double start_, saved_;
-  Films films_;
+  double start_;    // of this run, wall clock
+  double counted_;  // up to when state_.wall_seconds counts
+  RenderState state_;
   Pass pass_;
-  PassTotals totals_;
   int pilot_spp_ = 0;
 };
 
@@ -237,8 +236,9 @@ LaneLayout parse_lane_layout(std::string_view text) {
                          parse_extent(text, text.substr(first + 1, second - first - 1)),
                          parse_extent(text, text.substr(second + 1))};
   if (lanes.x > tile_size || lanes.y > tile_size || lanes.x * lanes.y * lanes.samples > 256) {
-    throw UsageError(fmt::format("lane layout '{}' is too large: at most {}x{} pixels and 256 lanes",
-                                 text, tile_size, tile_size));
+    throw UsageError(
+        fmt::format("lane layout '{}' is too large: at most {}x{} pixels and 256 lanes", text,
+                    tile_size, tile_size));
   }
   return lanes;
 }

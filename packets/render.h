@@ -36,7 +36,7 @@ struct RenderSettings {
   int threads = 0;            // 0: all cores
   int width = 0;              // SIMD lanes: 1, 4, 8, 16; 0: the instruction set's default
   LaneLayout lanes;
-  bool lanes_auto = true;     // the layout follows from the sampler
+  bool lanes_auto = true;  // the layout follows from the sampler
   Isa isa = choose_isa();
   // If not empty: the film is kept in this file as the render goes on, and a render that finds it
   // there continues it. Throws Error where it was made with other settings.

@@ -54,9 +54,8 @@ void draw_samples(const ShadeContext& c) {
   for (int i = 0; i < list.count; i += W) {
     store(list.path + i, gather(c.rays().path, load<Int<W>>(list.ray + i)));
   }
-  const SampleBatch batch{list.path,         list.count,
-                          paths.pixel,       paths.sample,
-                          c.job->first_sample, int(c.job->samples)};
+  const SampleBatch batch{list.path,    list.count,          paths.pixel,
+                          paths.sample, c.job->first_sample, int(c.job->samples)};
   const auto draw = [&](Purpose purpose) {
     fill_pair<W>(*c.job->sampler, batch, sample_pair(c.bounce, purpose), list.u[int(purpose)],
                  list.v[int(purpose)]);
@@ -74,9 +73,8 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
                                          IntOf<V> path, MaskOf<V> active, bool alone) {
   using I = IntOf<V>;
   const ShadeList& list = c.wave->list;
-  const auto value = [&](const FloatArray* a, Purpose p) LOCKSTEP_LAMBDA {
-    return load<V>(a[int(p)] + i);
-  };
+  const auto value = [&](const FloatArray* a, Purpose p)
+                         LOCKSTEP_LAMBDA { return load<V>(a[int(p)] + i); };
   const I light = c.scene->lights.count > 1
                       ? choose_light(c.scene->lights, value(list.u, Purpose::Choice))
                       : I(0);
@@ -106,9 +104,9 @@ LOCKSTEP_INLINE void continue_paths(const ShadeContext& c, const Surface<V>& sur
                                     const Bsdf& bsdf, Vec3<V> throughput, int i, IntOf<V> path,
                                     MaskOf<V> active, V lobe) {
   const ShadeList& list = c.wave->list;
-  const BsdfSample<V> s =
-      sample(bsdf, surface.wo, lobe,
-             Vec2<V>(load<V>(list.u[int(Purpose::Bsdf)] + i), load<V>(list.v[int(Purpose::Bsdf)] + i)));
+  const BsdfSample<V> s = sample(
+      bsdf, surface.wo, lobe,
+      Vec2<V>(load<V>(list.u[int(Purpose::Bsdf)] + i), load<V>(list.v[int(Purpose::Bsdf)] + i)));
   const Vec3<V> direction = surface.frame.to_world(s.wi);
   throughput = throughput * s.weight;
   MaskOf<V> alive = active & (s.pdf > V(0.0f)) & (s.wi.z > V(0.0f)) &
@@ -143,7 +141,8 @@ void shade(const ShadeContext& c) {
     const I ray = load<I>(list.ray + i), path = load<I>(list.path + i);
     const I geometry = gather(c.wave->hits.geometry, ray);
     const Surface<V> surface = load_surface(*c.scene, c.rays(), c.wave->hits, ray, geometry);
-    const auto bsdf = load_bsdf<K>(c.scene->materials, gather(c.scene->geometry.material, geometry));
+    const auto bsdf =
+        load_bsdf<K>(c.scene->materials, gather(c.scene->geometry.material, geometry));
     const Vec3<V> throughput = gather3(c.rays().throughput, ray);
     if (c.scene->lights.count > 0) {
       sample_direct_light(c, surface, bsdf, throughput, i, path, active, !go_on);

@@ -75,8 +75,8 @@ LOCKSTEP_INLINE void fill_shared_sequence(const SamplerState& state, const Sampl
       const UInt<W> pixel = gather(batch.pixel, path);
       const V w = state.weights ? gather(state.weights, as_int(pixel)) : V(state.weight);
       if (any(w > V(0.0f))) {
-        const auto offset = random_point(pixel, fresh ? sample : UInt<W>(0u), pair, state.seed,
-                                         Stream::Offset);
+        const auto offset =
+            random_point(pixel, fresh ? sample : UInt<W>(0u), pair, state.seed, Stream::Offset);
         point = {perturb(point.x, w, offset.x), perturb(point.y, w, offset.y)};
       }
     }

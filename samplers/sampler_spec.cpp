@@ -36,12 +36,11 @@ const std::array<Preset, 4>& presets() {
       {"an Owen-scrambled Sobol sequence of its own in every pixel, padded in pairs",
        "Burley 2020, Practical Hash-based Owen Scrambling",
        preset("owen", false, Sequence::Owen, None, WeightSource::Constant)},
-      {"one sequence for all pixels",
-       "Sadeghi, Chen and Jensen 2009, Coherent Path Tracing",
+      {"one sequence for all pixels", "Sadeghi, Chen and Jensen 2009, Coherent Path Tracing",
        preset("cpt", true, Sequence::Owen, None, WeightSource::Constant)},
       {"one sequence, left by each pixel as far as its weight from a pilot image says",
        "Staal and Hachisuka, Randomized Coherent Sampling",
-       preset("rcs", true, Sequence::Owen, Fresh, WeightSource::Map)},
+       preset("rcs", true, Sequence::Owen, Constant, WeightSource::Map)},
   }};
   return list;
 }
@@ -118,8 +117,9 @@ const std::array<Option, 8>& options() {
       {"sequence", "random|owen", "the sequence u_k", true,
        [](S& s, T k, T v) { s.sequence = parse_choice<Sequence>(k, v); },
        [](const S& s) { return word(s.sequence); }},
-      {"offset", "none|fresh|constant", "the perturbation u_{i,k}: none, new for each k, or one per pixel",
-       true, [](S& s, T k, T v) { s.perturbation = parse_choice<Perturbation>(k, v); },
+      {"offset", "none|fresh|constant",
+       "the perturbation u_{i,k}: none, new for each k, or one per pixel", true,
+       [](S& s, T k, T v) { s.perturbation = parse_choice<Perturbation>(k, v); },
        [](const S& s) { return word(s.perturbation); }},
       {"weight", "map|0..1", "w: a map from a pilot, or one number for all pixels", true,
        [](S& s, T k, T v) {
@@ -162,8 +162,8 @@ void apply_option(SamplerSpec& spec, std::string_view item) {
   for (const Option& option : options()) {
     if (option.key != key) continue;
     if (option.shared_only && !spec.shared) {
-      throw UsageError(fmt::format("sampler {} has no option {}: its pixels share no sequence",
-                                   spec.name, key));
+      throw UsageError(
+          fmt::format("sampler {} has no option {}: its pixels share no sequence", spec.name, key));
     }
     option.set(spec, key, value);
     return;
@@ -187,8 +187,8 @@ SamplerSpec parse_sampler(std::string_view text) {
     rest = rest.substr(comma + 1);
   }
   if (spec.weight_source == WeightSource::Map && spec.perturbation == Perturbation::None) {
-    throw UsageError(fmt::format("{}: a weight map needs an offset to weigh; set offset=fresh",
-                                 text));
+    throw UsageError(
+        fmt::format("{}: a weight map needs an offset to weigh; set offset=fresh", text));
   }
   if (spec.weight_source == WeightSource::Constant && spec.weight > 1.0f) {
     throw UsageError(fmt::format("{}: weight lies in [0, 1]; 1 is already independent", text));

@@ -2,7 +2,8 @@
 //
 // A sampler is a sequence, shared by all pixels or a pixel's own, x a perturbation that lets a
 // pixel leave the shared sequence, x a weight w that says how far:
-//   uc_{i,k} = (u_k + w_i * u_{i,k}) mod 1        (Staal and Hachisuka, Randomized Coherent Sampling)
+//   uc_{i,k} = (u_k + w_i * u_{i,k}) mod 1        (Staal and Hachisuka, Randomized Coherent
+//   Sampling)
 // The names `random`, `owen`, `cpt` and `rcs` are presets; every option can be overridden.
 #pragma once
 
@@ -12,11 +13,15 @@
 
 namespace lockstep {
 
-enum class Sequence { Random, Owen };                 // u_k: independent, or Owen-scrambled Sobol
-enum class Perturbation { None, Fresh, Constant };    // u_{i,k}: none, new for each k, fixed per pixel
-enum class WeightSource { Constant, Map };            // w_i: one number, or a map made from a pilot
-enum class WeightFilter { None, Gaussian, Median };   // applied to the pilot before differences
-enum class Combine { Add, Weight };                   // by sample counts (unbiased), or by w (biased)
+enum class Sequence { Random, Owen };  // u_k: independent, or Owen-scrambled Sobol
+enum class Perturbation {
+  None,
+  Fresh,
+  Constant
+};                                          // u_{i,k}: none, new for each k, fixed per pixel
+enum class WeightSource { Constant, Map };  // w_i: one number, or a map made from a pilot
+enum class WeightFilter { None, Gaussian, Median };  // applied to the pilot before differences
+enum class Combine { Add, Weight };  // by sample counts (unbiased), or by w (biased)
 
 struct SamplerSpec {
   std::string name = "random";  // the preset's name
@@ -34,7 +39,9 @@ struct SamplerSpec {
   Combine combine = Combine::Add;
 
   // True where the expected image is the integral for any scene; see docs of Combine::Weight.
-  bool unbiased() const { return weight_source == WeightSource::Constant || combine == Combine::Add; }
+  bool unbiased() const {
+    return weight_source == WeightSource::Constant || combine == Combine::Add;
+  }
 };
 
 // Parses "name" or "name:key=value,key=value". Throws UsageError naming the valid choices.

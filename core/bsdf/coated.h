@@ -26,9 +26,8 @@ struct CoatedBsdf {
 template <class I>
 LOCKSTEP_INLINE CoatedBsdf<FloatOf<I>> load_coated(const MaterialTable& t, I index) {
   const auto alpha = material_scalar(t, index, 6);
-  return {material_color(t, index, 0),    material_color(t, index, 3),
-          {{alpha, alpha}},               material_scalar(t, index, 7),
-          material_scalar(t, index, 8),   material_scalar(t, index, 9)};
+  return {material_color(t, index, 0),  material_color(t, index, 3),  {{alpha, alpha}},
+          material_scalar(t, index, 7), material_scalar(t, index, 8), material_scalar(t, index, 9)};
 }
 
 // Share of light that gets through the coat at this angle; 1 where coat and base are just added.

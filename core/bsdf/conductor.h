@@ -16,7 +16,8 @@ struct ConductorBsdf {
 
 template <class I>
 LOCKSTEP_INLINE ConductorBsdf<FloatOf<I>> load_conductor(const MaterialTable& t, I index) {
-  return {material_color(t, index, 0), material_color(t, index, 3),
+  return {material_color(t, index, 0),
+          material_color(t, index, 3),
           {{material_scalar(t, index, 6), material_scalar(t, index, 7)}}};
 }
 

@@ -57,7 +57,7 @@ expect 2 'resolution' render cornell -o a.exr --resolution 0x5
 expect 2 'resolution' render cornell -o a.exr --resolution 5
 expect 2 'width' render cornell -o a.exr --width 3
 expect 2 'isa' render cornell -o a.exr --isa z80
-expect 2 'lanes' render cornell -o a.exr --lanes 3x5
+expect 2 'lane' render cornell -o a.exr --lanes 3x5
 expect 2 'nosuch' render cornell -o a.exr --sampler nosuch
 expect 2 'exr' render cornell -o a.text
 expect 2 'weight map' render cornell -o a.exr --weights w.exr

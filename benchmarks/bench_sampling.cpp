@@ -1,0 +1,69 @@
+// Cost of sample values: nanoseconds of CPU time per value, by sampler, instruction set and width.
+// One batch is what the path integrator asks for: 256 pixels of a tile, four samples of each.
+#include "packets/kernel.h"
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace lockstep {
+namespace {
+
+constexpr std::uint32_t seed = 1;
+constexpr int pixels = 256, samples = 4, count = pixels * samples;
+
+SamplerState state_of(const char* text) {
+  const SamplerSpec spec = parse_sampler(text);
+  SamplerState state;
+  state.seed = seed;
+  state.shared = spec.shared;
+  state.sequence = spec.sequence;
+  state.perturbation = spec.perturbation;
+  state.weight = spec.weight;
+  return state;
+}
+
+void sample(benchmark::State& loop, const Kernel& kernel, const char* text) {
+  std::vector<std::int32_t> path(count + 16);
+  std::vector<std::uint32_t> pixel(count + 16), number(count + 16);
+  for (int i = 0; i < count; ++i) {
+    path[size_t(i)] = i;
+    pixel[size_t(i)] = std::uint32_t(i % pixels);
+    number[size_t(i)] = std::uint32_t(i / pixels);
+  }
+  std::vector<float> u(count + 16), v(count + 16);
+  const SamplerState state = state_of(text);
+  const SampleBatch batch{path.data(), count, pixel.data(), number.data(), 0, samples};
+  int pair = 0;
+  for (auto _ : loop) {
+    kernel.fill_pair(state, batch, pair++ & 31, u.data(), v.data());
+    benchmark::ClobberMemory();
+  }
+  loop.counters["per_value"] = benchmark::Counter(
+      2.0 * count, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void register_all() {
+  for (const Isa isa : available_isas()) {
+    for (const char* text : {"random", "owen", "cpt", "rcs:weight=0.3,offset=fresh",
+                             "rcs:weight=0.3,offset=constant"}) {
+      for (const int width : {1, 4, 8, 16}) {
+        const std::string label =
+            fmt::format("sampling/{}/{}/width:{}/seed:{}", text, name(isa), width, seed);
+        benchmark::RegisterBenchmark(label.c_str(), sample, find_kernel(isa, width), text)
+            ->MinTime(0.1);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lockstep
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  lockstep::register_all();
+  benchmark::RunSpecifiedBenchmarks();
+}

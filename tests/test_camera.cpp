@@ -1,0 +1,207 @@
+// Camera rays: the field of view, the pixel grid, and the density of the pixel filters.
+#include "core/camera.h"
+
+#include "core/flatten.h"
+#include "tests/chi_square.h"
+#include "tests/widths.h"
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/trigonometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lockstep {
+namespace {
+
+constexpr std::uint32_t sample_count = 1 << 17;
+
+// A flattened camera whose tables point into `flat`.
+struct FlatCamera {
+  FlatScene flat;
+  CameraData data;
+
+  FlatCamera(const CameraDescription& camera, const FilmDescription& film) {
+    flatten_camera(camera, film, flat);
+    data = flat.camera;
+    data.filter_x = flat.filter_x.data();
+    data.filter_y = flat.filter_y.data();
+  }
+  FlatCamera(const FlatCamera&) = delete;
+};
+
+constexpr Vec2<float> corner_of_box{0.0f, 0.0f};
+
+TEST(Camera, FieldOfViewSpansTheShorterAxis) {
+  for (const glm::ivec2 size : {glm::ivec2(640, 480), glm::ivec2(300, 900), glm::ivec2(64, 64)}) {
+    for (const float fov : {20.0f, 60.0f, 90.0f, 120.0f}) {
+      CameraDescription description;
+      description.fov_degrees = fov;
+      FilmDescription film{size.x, size.y, {}};
+      const FlatCamera camera(description, film);
+      const auto through = [&](float x, float y) {
+        return camera_direction(camera.data, x, y, corner_of_box);
+      };
+      const float w = float(size.x), h = float(size.y), shorter = std::min(w, h);
+      const float tangent = std::tan(0.5f * glm::radians(fov));
+      const glm::vec3 centre = through(0.5f * w, 0.5f * h);
+      EXPECT_LT(length(centre - glm::vec3(0.0f, 0.0f, 1.0f)), 1e-6f);
+      // Left and up are -x and +y of camera space; rows run downwards.
+      const glm::vec3 top_left = through(0.0f, 0.0f), bottom_right = through(w, h);
+      EXPECT_NEAR(top_left.x / top_left.z, -tangent * w / shorter, 1e-5f * w / shorter);
+      EXPECT_NEAR(top_left.y / top_left.z, tangent * h / shorter, 1e-5f * h / shorter);
+      EXPECT_NEAR(bottom_right.x / bottom_right.z, tangent * w / shorter, 1e-5f * w / shorter);
+      EXPECT_NEAR(bottom_right.y / bottom_right.z, -tangent * h / shorter, 1e-5f * h / shorter);
+      EXPECT_NEAR(length(top_left), 1.0f, 1e-6f);
+    }
+  }
+}
+
+// A camera somewhere else, and the inverse of its projection.
+CameraDescription moved_camera() {
+  CameraDescription camera;
+  camera.fov_degrees = 50.0f;
+  camera.camera_to_world =
+      glm::rotate(glm::translate(glm::mat4(1.0f), glm::vec3(3.0f, -2.0f, 5.0f)), 2.0f,
+                  glm::vec3(0.6f, 0.0f, 0.8f));
+  return camera;
+}
+
+glm::dvec2 pixel_position(const CameraDescription& camera, const FilmDescription& film,
+                          glm::vec3 direction) {
+  const glm::dmat3 rotation(glm::mat3(camera.camera_to_world));
+  const glm::dvec3 d = glm::transpose(rotation) * glm::dvec3(direction);
+  const double tangent = std::tan(0.5 * glm::radians(double(camera.fov_degrees)));
+  const double scale = 0.5 * std::min(film.width, film.height) / tangent;
+  return {0.5 * film.width + scale * d.x / d.z, 0.5 * film.height - scale * d.y / d.z};
+}
+
+TEST(Camera, BoxFilterStaysInItsPixelAndIsUniform) {
+  const CameraDescription description = moved_camera();
+  const FilmDescription film{320, 200, {}};
+  const FlatCamera camera(description, film);
+  ASSERT_TRUE(camera.data.box_filter);
+  EXPECT_EQ(camera.data.origin, glm::vec3(3.0f, -2.0f, 5.0f));
+  constexpr double rounding = 1e-4;
+  CellCounts counts(16, 16);
+  for (std::uint32_t i = 0; i < sample_count; ++i) {
+    const float column = float(i % 320), row = float(i / 320 % 200);
+    const glm::vec3 d = camera_direction(camera.data, column, row, uniform2(i, 1));
+    const glm::dvec2 p = pixel_position(description, film, d) - glm::dvec2(column, row);
+    ASSERT_TRUE(p.x > -rounding && p.x < 1.0 + rounding) << p.x;
+    ASSERT_TRUE(p.y > -rounding && p.y < 1.0 + rounding) << p.y;
+    counts.add(p);
+  }
+  const DensityTest test = counts.test([](glm::dvec2) { return 1.0; });
+  EXPECT_GT(test.chi_square.p_value, test_significance);
+}
+
+double normal_distribution(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
+
+// Share of the filter's weight that lies below x, in closed form.
+double filter_distribution(const PixelFilter& filter, double radius, double x) {
+  x = std::clamp(x, -radius, radius);
+  if (filter.kind == PixelFilter::Kind::Box) return 0.5 + 0.5 * x / radius;
+  if (filter.kind == PixelFilter::Kind::Triangle) {
+    const double tail = 0.5 * (1.0 - std::abs(x) / radius) * (1.0 - std::abs(x) / radius);
+    return x < 0.0 ? tail : 1.0 - tail;
+  }
+  // A Gaussian lowered by its value at the radius.
+  const double s = double(filter.sigma), edge = std::exp(-0.5 * radius * radius / (s * s));
+  const auto weight_below = [&](double t) {
+    const double gauss = normal_distribution(t / s) - normal_distribution(-radius / s);
+    return s * std::sqrt(2.0 * glm::pi<double>()) * gauss - edge * (t + radius);
+  };
+  return weight_below(x) / weight_below(radius);
+}
+
+std::vector<PixelFilter> filters() {
+  using Kind = PixelFilter::Kind;
+  return {{Kind::Triangle, glm::vec2(1.0f)},
+          {Kind::Triangle, glm::vec2(2.0f, 1.5f)},
+          {Kind::Gaussian, glm::vec2(1.5f), 0.5f},
+          {Kind::Gaussian, glm::vec2(2.0f, 1.0f), 1.0f},
+          {Kind::Box, glm::vec2(1.0f, 0.5f)}};
+}
+
+TEST(Camera, FilterTableInvertsTheDistribution) {
+  for (const PixelFilter& filter : filters()) {
+    const FlatCamera camera({}, {64, 64, filter});
+    ASSERT_FALSE(camera.data.box_filter);
+    const auto expect_inverse = [&](const float* table, float radius) {
+      float previous = -radius;
+      for (int i = 0; i < 1 << 14; ++i) {
+        const float u = float(i) * 0x1p-14f;
+        const float x = filter_offset(table, u);
+        EXPECT_GE(x, previous);
+        previous = x;
+        // Exact at the table's knots, linear between them.
+        const bool knot = i % ((1 << 14) / filter_cells) == 0;
+        EXPECT_NEAR(filter_distribution(filter, double(radius), double(x)), double(u),
+                    knot ? 2e-6 : 0.4 / filter_cells);
+      }
+      EXPECT_EQ(filter_offset(table, 0.0f), -radius);
+      EXPECT_LE(filter_offset(table, one_minus_epsilon), radius);
+      EXPECT_NEAR(filter_offset(table, 0.5f), 0.0f, 1e-4f);
+    };
+    expect_inverse(camera.data.filter_x, filter.radius.x);
+    expect_inverse(camera.data.filter_y, filter.radius.y);
+  }
+}
+
+// Positions through the true distributions along x and y must be uniform, in cells that do not
+// resolve the table's own.
+TEST(Camera, SamplesFollowTheFilter) {
+  const CameraDescription description = moved_camera();
+  std::uint32_t seed = 10;
+  for (const PixelFilter& filter : filters()) {
+    const FilmDescription film{64, 48, filter};
+    const FlatCamera camera(description, film);
+    CellCounts counts(16, 16);
+    ++seed;
+    for (std::uint32_t i = 0; i < sample_count; ++i) {
+      const glm::vec3 d = camera_direction(camera.data, 20.0f, 30.0f, uniform2(i, seed));
+      const glm::dvec2 offset = pixel_position(description, film, d) - glm::dvec2(20.5, 30.5);
+      ASSERT_LT(std::abs(offset.x), double(filter.radius.x) + 1e-4);
+      ASSERT_LT(std::abs(offset.y), double(filter.radius.y) + 1e-4);
+      counts.add({filter_distribution(filter, double(filter.radius.x), offset.x),
+                  filter_distribution(filter, double(filter.radius.y), offset.y)});
+    }
+    const DensityTest test = counts.test([](glm::dvec2) { return 1.0; });
+    EXPECT_GT(test.chi_square.p_value, sidak_significance(int(filters().size())))
+        << "filter " << int(filter.kind) << ": chi-square " << test.chi_square.statistic << " with "
+        << test.chi_square.degrees << " degrees of freedom";
+  }
+}
+
+TEST(Camera, HasTheSameBitsAtEveryWidth) {
+  for (const PixelFilter& filter : {PixelFilter{}, filters()[2]}) {
+    const FlatCamera camera(moved_camera(), {320, 200, filter});
+    for_each_width([&](auto width) {
+      constexpr int W = width();
+      using V = Float<W>;
+      for (std::uint32_t first = 0; first < 4096; first += W) {
+        float column[W], row[W], u[W], v[W];
+        for (int k = 0; k < W; ++k) {
+          const std::uint32_t i = first + std::uint32_t(k);
+          column[k] = float(i % 320), row[k] = float(i / 320);
+          u[k] = uniform2(i, 2).x, v[k] = uniform2(i, 2).y;
+        }
+        u[0] = 0.0f, v[0] = one_minus_epsilon;
+        const Vec3<V> wide = camera_direction(camera.data, load<V>(column), load<V>(row),
+                                              Vec2<V>(load<V>(u), load<V>(v)));
+        for (int k = 0; k < W; ++k) {
+          ASSERT_TRUE(same_value(lane(wide, k), camera_direction(camera.data, column[k], row[k],
+                                                                 Vec2<float>(u[k], v[k]))))
+              << "W=" << W;
+        }
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace lockstep

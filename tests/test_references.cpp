@@ -1,0 +1,106 @@
+// Real scenes against pbrt-v4's renders of the same files, where both lie beside the project.
+// Means are compared, and blocks of pixels, so that light has to be in its place too.
+#include "tests/t_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#ifndef LOCKSTEP_SHARED_DIR
+#error "define LOCKSTEP_SHARED_DIR"
+#endif
+
+namespace lockstep {
+namespace {
+
+struct Reference {
+  const char* scene;
+  const char* image;
+  int depth;
+  int spp;  // for a standard error of the mean well below a third of a per cent
+  // What blocks may differ by: more where noise is strong, and between saturated walls, which look
+  // otherwise in pbrt's spectra than in RGB once light has met them twice.
+  double tolerance = 0.05;
+};
+
+constexpr int columns = 8, rows = 6;
+
+double pixel_luminance(const float* p) {
+  return 0.2126 * double(p[0]) + 0.7152 * double(p[1]) + 0.0722 * double(p[2]);
+}
+
+// Mean luminance of each block, row by row, without the pixels that the reference has above
+// `limit`: mirror images of small lights, whose noise would be all that is compared.
+std::vector<double> block_means(const Image& image, const Image& reference, double limit) {
+  std::vector<double> sum(columns * rows), count(columns * rows);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      if (pixel_luminance(reference.at(x, y)) > limit) continue;
+      const auto block = size_t(y * rows / image.height * columns + x * columns / image.width);
+      sum[block] += pixel_luminance(image.at(x, y));
+      count[block] += 1.0;
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] /= count[i];
+  return sum;
+}
+
+double luminance_mean(const Image& image) {
+  return 0.2126 * channel_mean(image, 0) + 0.7152 * channel_mean(image, 1) +
+         0.0722 * channel_mean(image, 2);
+}
+
+class References : public testing::TestWithParam<Reference> {};
+
+TEST_P(References, AreMatched) {
+  const std::string folder = std::string(LOCKSTEP_SHARED_DIR) + "/scenes/";
+  const Reference& r = GetParam();
+  if (!std::filesystem::exists(folder + r.image) || !std::filesystem::exists(folder + r.scene)) {
+    GTEST_SKIP() << "skipped: no " << folder << r.image;
+  }
+  const Image expected = read_image(folder + r.image);
+  const Scene scene = build(resized(read_scene(folder + r.scene), expected.width, expected.height));
+  RenderSettings s;
+  s.seed = 3;
+  s.spp = r.spp;
+  s.depth = r.depth;
+  s.threads = 2;
+  const RenderResult result = render(scene, parse_sampler("owen"), s);
+  EXPECT_EQ(result.stats.nonfinite, 0u);
+
+  const double mean = luminance_mean(expected);
+  EXPECT_NEAR(luminance_mean(result.image), mean, 0.02 * mean);
+  for (int c = 0; c < 3; ++c) {
+    const double channel = channel_mean(expected, c);
+    EXPECT_NEAR(channel_mean(result.image, c), channel, r.tolerance * channel) << "channel " << c;
+  }
+  const std::vector<double> ours = block_means(result.image, expected, 10.0 * mean);
+  const std::vector<double> theirs = block_means(expected, expected, 10.0 * mean);
+  int compared = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    if (theirs[i] < 0.05 * mean) continue;
+    ++compared;
+    EXPECT_NEAR(ours[i], theirs[i], r.tolerance * theirs[i])
+        << "block " << i % columns << ", " << i / columns;
+  }
+  EXPECT_GE(compared, columns * rows / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Pbrt, References,
+    testing::Values(
+        Reference{"killeroo-quad/killeroo-quad.pbrt", "killeroo-quad/reference-depth1.exr", 1, 64},
+        Reference{"killeroo-quad/killeroo-quad.pbrt", "killeroo-quad/reference-depth5.exr", 5, 64},
+        Reference{"cornell-box/scene-v4.pbrt", "cornell-box/reference-pbrt.exr", 65, 48, 0.15},
+        Reference{"veach-mis/scene-v4.pbrt", "veach-mis/reference-pbrt.exr", 3, 96, 0.1}),
+    [](const auto& p) {
+      std::string name = p.param.scene;
+      name = name.substr(0, name.find('/')) + "Depth" + std::to_string(p.param.depth);
+      std::erase(name, '-');
+      return name;
+    });
+
+}  // namespace
+}  // namespace lockstep

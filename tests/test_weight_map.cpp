@@ -1,0 +1,187 @@
+// Weight maps against values worked out by hand.
+#include "samplers/weight_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lockstep {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+// A grey image from its rows.
+Image grey(int width, const std::vector<float>& values) {
+  Image image(width, int(values.size()) / width);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::fill_n(&image.pixels[i * 3], 3, values[i]);
+  }
+  return image;
+}
+
+std::vector<float> channel(const Image& image, int c) {
+  std::vector<float> values;
+  for (std::size_t i = size_t(c); i < image.pixels.size(); i += size_t(image.channels)) {
+    values.push_back(image.pixels[i]);
+  }
+  return values;
+}
+
+std::vector<float> weights(const Image& image, float c, float t) {
+  const Image w = make_weights(image, {c, t, WeightFilter::None});
+  EXPECT_EQ(w.channels, 1);
+  EXPECT_EQ(w.width, image.width);
+  EXPECT_EQ(w.height, image.height);
+  return w.pixels;
+}
+
+using Values = std::vector<float>;
+
+TEST(RelativeDifference, IsZeroBetweenEqualPixels) {
+  for (const float value : {0.0f, 1e-30f, 0.5f, 1e30f}) {
+    const Image image = grey(3, Values(9, value));
+    for (int i = 0; i < 9; ++i) EXPECT_EQ(relative_difference(image, i % 3, i / 3), 0.0f);
+  }
+  EXPECT_EQ(relative_difference(grey(1, {3.0f}), 0, 0), 0.0f);
+}
+
+TEST(RelativeDifference, IsOneBetweenBlackAndAnyLight) {
+  const Image image = grey(4, {0, 0, 1e-20f, 0});
+  EXPECT_EQ(relative_difference(image, 0, 0), 0.0f);
+  EXPECT_EQ(relative_difference(image, 1, 0), 1.0f);
+  EXPECT_EQ(relative_difference(image, 2, 0), 1.0f);
+  EXPECT_EQ(relative_difference(image, 3, 0), 1.0f);
+}
+
+TEST(RelativeDifference, TakesTheLargestOverChannelsAndNeighbours) {
+  Image image = grey(3, Values(9, 2.0f));
+  image.at(2, 2)[1] = 1.0f;  // green: |2 - 1| / 2
+  EXPECT_EQ(relative_difference(image, 1, 1), 0.5f);
+  EXPECT_EQ(relative_difference(image, 2, 2), 0.5f);
+  EXPECT_EQ(relative_difference(image, 0, 0), 0.0f);  // two pixels away
+  image.at(0, 1)[2] = 8.0f;                           // blue: |2 - 8| / 8
+  EXPECT_EQ(relative_difference(image, 1, 1), 0.75f);
+  EXPECT_EQ(relative_difference(image, 2, 2), 0.5f);
+}
+
+TEST(RelativeDifference, SeesAllEightNeighbours) {
+  for (int i = 0; i < 9; ++i) {
+    Values values(9, 1.0f);
+    values[size_t(i)] = 4.0f;
+    EXPECT_EQ(relative_difference(grey(3, values), 1, 1), 0.75f) << i;
+  }
+}
+
+TEST(RelativeDifference, StaysInsideTheImage) {
+  // Row ends must not meet the next row's beginning.
+  const Image image = grey(3, {1, 1, 5, 1, 1, 5, 1, 1, 5});
+  for (int y = 0; y < 3; ++y) {
+    EXPECT_EQ(relative_difference(image, 0, y), 0.0f);
+    EXPECT_EQ(relative_difference(image, 1, y), 0.8f);
+    EXPECT_EQ(relative_difference(image, 2, y), 0.8f);
+  }
+}
+
+TEST(WeightMap, IsCTimesTheDifferenceFromTheThresholdOn) {
+  const Image image = grey(5, {1, 1, 2, 2, 2});  // d = 0, .5, .5, 0, 0
+  EXPECT_EQ(weights(image, 1.0f, 0.0f), (Values{0, 0.5f, 0.5f, 0, 0}));
+  EXPECT_EQ(weights(image, 0.5f, 0.25f), (Values{0, 0.25f, 0.25f, 0, 0}));
+  EXPECT_EQ(weights(image, 1.0f, 0.5f), (Values{0, 0.5f, 0.5f, 0, 0}));  // d = t counts
+  EXPECT_EQ(weights(image, 1.0f, std::nextafter(0.5f, 1.0f)), Values(5, 0.0f));
+}
+
+TEST(WeightMap, IsAtMostOne) {
+  const Image image = grey(5, {1, 1, 2, 2, 2});
+  EXPECT_EQ(weights(image, 2.0f, 0.0f), (Values{0, 1, 1, 0, 0}));
+  EXPECT_EQ(weights(image, 3.0f, 0.0f), (Values{0, 1, 1, 0, 0}));
+  EXPECT_EQ(weights(image, 1e38f, 0.0f), (Values{0, 1, 1, 0, 0}));
+  EXPECT_EQ(weights(image, infinity, 0.0f), (Values{0, 1, 1, 0, 0}));
+}
+
+TEST(WeightMap, ExtremeParametersShareAllOrNothing) {
+  const Image image = grey(3, {0, 1, 7});
+  EXPECT_EQ(weights(image, 0.0f, 0.0f), Values(3, 0.0f));
+  EXPECT_EQ(weights(image, 4.0f, infinity), Values(3, 0.0f));
+  EXPECT_EQ(weights(image, infinity, infinity), Values(3, 0.0f));
+  EXPECT_EQ(weights(grey(3, Values(9, 1.0f)), infinity, 0.0f), Values(9, 0.0f));
+  EXPECT_EQ(weights(grey(3, Values(9, 0.0f)), infinity, 0.0f), Values(9, 0.0f));
+}
+
+TEST(PilotFilter, NoneLeavesTheImageAlone) {
+  const Image image = grey(3, {1, 2, 3, 4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(filter_pilot(image, WeightFilter::None).pixels, image.pixels);
+}
+
+TEST(PilotFilter, GaussianIsFiveWideWithUnitSigma) {
+  // The response to a single light pixel is the kernel; rows and columns separate.
+  Values delta(81, 0.0f);
+  delta[4 * 9 + 4] = 1.0f;
+  const Image out = filter_pilot(grey(9, delta), WeightFilter::Gaussian);
+  const double g[] = {1.0, std::exp(-0.5), std::exp(-2.0)};
+  const double total = g[0] + 2.0 * g[1] + 2.0 * g[2];
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 0; x < 9; ++x) {
+      const int dx = std::abs(x - 4), dy = std::abs(y - 4);
+      const double expected = dx > 2 || dy > 2 ? 0.0 : g[dx] * g[dy] / (total * total);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(out.at(x, y)[c], expected, 1e-7) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(PilotFilter, GaussianIsNormalisedAtTheBorder) {
+  Values delta(25, 0.0f);
+  delta[0] = 1.0f;
+  const Image out = filter_pilot(grey(5, delta), WeightFilter::Gaussian);
+  const double side = 1.0 + std::exp(-0.5) + std::exp(-2.0);  // what a corner keeps of the kernel
+  EXPECT_NEAR(out.at(0, 0)[0], 1.0 / (side * side), 1e-6);
+  EXPECT_NEAR(out.at(1, 0)[0], std::exp(-0.5) / ((side + std::exp(-0.5)) * side), 1e-6);
+  const Image flat = filter_pilot(grey(5, Values(25, 3.0f)), WeightFilter::Gaussian);
+  for (const float value : flat.pixels) EXPECT_NEAR(value, 3.0f, 1e-6f);
+}
+
+TEST(PilotFilter, MedianTakesTheMiddleOfNine) {
+  const Image image = grey(3, {9, 1, 8, 2, 7, 3, 6, 4, 5});
+  EXPECT_EQ(filter_pilot(image, WeightFilter::Median).at(1, 1)[0], 5.0f);
+}
+
+TEST(PilotFilter, MedianTakesTheLowerMiddleAtTheBorder) {
+  const Values expected{2, 3, 3,   // corners: 2nd of 4; edges: 3rd of 6
+                        4, 5, 5,   //
+                        5, 6, 6};  //
+  const Image image = grey(3, {1, 2, 3, 4, 5, 6, 7, 8, 9});
+  EXPECT_EQ(channel(filter_pilot(image, WeightFilter::Median), 0), expected);
+}
+
+TEST(PilotFilter, MedianRemovesAFireflyFromEachChannelByItself) {
+  Image image = grey(3, Values(9, 1.0f));
+  image.at(1, 1)[0] = 1e6f;
+  image.at(0, 0)[1] = 0.0f;
+  const Image out = filter_pilot(image, WeightFilter::Median);
+  for (const float value : out.pixels) EXPECT_EQ(value, 1.0f);
+  const Image w = make_weights(image, {4.0f, 0.0f, WeightFilter::Median});
+  EXPECT_EQ(w.pixels, Values(9, 0.0f));
+}
+
+TEST(WeightMap, TakesDifferencesAfterTheFilter) {
+  // A light pixel in the middle of 5x5 reaches the corner with exp(-4) of its peak, but every
+  // pixel's filtered neighbour towards the middle is larger by exp(.5), exp(1) or exp(1.5).
+  Values delta(25, 0.0f);
+  delta[12] = 1.0f;
+  const Image image = grey(5, delta);
+  const Image w = make_weights(image, {0.5f, 0.0f, WeightFilter::Gaussian});
+  const Image filtered = filter_pilot(image, WeightFilter::Gaussian);
+  const double a = filtered.at(0, 0)[0], b = filtered.at(1, 1)[0];
+  EXPECT_NEAR(*w.at(0, 0), 0.5 * (b - a) / b, 1e-6);
+}
+
+TEST(MeanWeight, IsTheMean) {
+  Image w(2, 2, 1);
+  w.pixels = {0.0f, 1.0f, 0.5f, 0.25f};
+  EXPECT_DOUBLE_EQ(mean_weight(w), 0.4375);
+  EXPECT_DOUBLE_EQ(mean_weight(Image()), 0.0);
+}
+
+}  // namespace
+}  // namespace lockstep
