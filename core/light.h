@@ -65,7 +65,7 @@ template <class V>
 LOCKSTEP_INLINE V sphere_cone(V distance2, V radius) {
   const V sin2 = radius * radius / distance2;
   const V cos_max = sqrt(max(V(0.0f), V(1.0f) - sin2));
-  return select(sin2 < V(0.9999f), sin2 / (V(1.0f) + cos_max), V(-1.0f));
+  return select(sin2 < V(1.0f), sin2 / (V(1.0f) + cos_max), V(-1.0f));
 }
 
 template <class V>

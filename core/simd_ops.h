@@ -231,25 +231,22 @@ template <class T>
 LOCKSTEP_INLINE T gather(const T* base, std::int32_t index) {
   return base[index];
 }
+// Lane by lane, but with AVX-512: the 8-wide gather instruction is half as fast as eight loads on
+// AMD cores, and on Intel's since their microcode guards against data sampling.
 template <class T, int W>
 LOCKSTEP_INLINE Lanes<T, W> gather(const T* base, Lanes<std::int32_t, W> index) {
   return apply_lanes<Lanes<T, W>>(
       [base](auto i) LOCKSTEP_LAMBDA {
         using Target = typename NativeVector<T, sizeof(i) / 4>::type;
+        if constexpr (sizeof(i) == 16) {
+          return Target{base[i[0]], base[i[1]], base[i[2]], base[i[3]]};
+        } else if constexpr (sizeof(i) == 32) {
+          return Target{base[i[0]], base[i[1]], base[i[2]], base[i[3]],
+                        base[i[4]], base[i[5]], base[i[6]], base[i[7]]};
 #if defined(__AVX512F__)
-        if constexpr (sizeof(i) == 64) {
+        } else {
           return (Target)_mm512_i32gather_epi32((__m512i)i, (const int*)base, 4);
-        } else
 #endif
-#if defined(__AVX2__)
-            if constexpr (sizeof(i) == 32) {
-          return (Target)_mm256_i32gather_epi32((const int*)base, (__m256i)i, 4);
-        } else
-#endif
-        {
-          Target r;
-          for (int lane = 0; lane < int(sizeof(i) / 4); ++lane) r[lane] = base[i[lane]];
-          return r;
         }
       },
       index);

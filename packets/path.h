@@ -103,7 +103,8 @@ void add_emission(const ShadeContext& c) {
     const Emitted<V> e =
         hit_light(scene, gather(scene.light_of_primitive, entry), load3<V>(rays.origin, i),
                   load3<V>(rays.direction, i), load<V>(hits.distance + i));
-    add(i, e.radiance, e.pdf, emitting & (max_component(e.radiance) > V(0.0f)));
+    // NaN is added too, to be counted.
+    add(i, e.radiance, e.pdf, emitting & !(max_component(e.radiance) <= V(0.0f)));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "samplers/weight_map.h"
 
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <charconv>
@@ -82,6 +83,9 @@ class Renderer {
   }
 
   RenderResult run() {
+    // More threads than cores are given if asked for.
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                      std::size_t(pass_.threads));
     restore();
     RenderResult result;
     SamplerState state = image_state(sampler_, settings_);

@@ -45,7 +45,8 @@ LOCKSTEP_INLINE Vec3<FloatOf<I>> interpolated_normal(const SceneData& scene, con
   return fma(u, n1, fma(v, n2, n0 * (V(1.0f) - u - v)));
 }
 
-// Spheres: the hit is put back onto the sphere, whose normal there is exact.
+// Spheres: the hit is put back onto the sphere, whose normal there is exact; its length, like a
+// triangle's, is the square of the shape's size.
 template <class I>
 LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, I geometry, Vec3<FloatOf<I>>& hit,
                                    Vec3<FloatOf<I>>& normal) {
@@ -56,7 +57,7 @@ LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, I geometry, Vec3<Floa
   const V radius = gather(scene.geometry.spheres + 3, geometry * I(4));
   const Vec3<V> n = normalize_any<V>(hit - centre);
   hit = select<V>(sphere, fma(radius, n, centre), hit);
-  normal = select<V>(sphere, n, normal);
+  normal = select<V>(sphere, n * (radius * radius), normal);
 }
 
 // The surface that the rays of the queue with these indices hit. Lanes that hit nothing must not

@@ -190,6 +190,10 @@ SamplerSpec parse_sampler(std::string_view text) {
     throw UsageError(
         fmt::format("{}: a weight map needs an offset to weigh; set offset=fresh", text));
   }
+  if (spec.perturbation == Perturbation::None &&
+      spec.weight != find_preset(spec.name).spec.weight) {
+    throw UsageError(fmt::format("{}: a weight needs an offset to weigh; set offset=fresh", text));
+  }
   if (spec.weight_source == WeightSource::Constant && spec.weight > 1.0f) {
     throw UsageError(fmt::format("{}: weight lies in [0, 1]; 1 is already independent", text));
   }
@@ -235,7 +239,7 @@ std::vector<std::string> split_sampler_list(std::string_view list) {
     if (begins || result.empty()) {
       result.emplace_back(item);
     } else {
-      result.back() += "," + std::string(item);
+      result.back().append(",").append(item);
     }
     list = comma == std::string_view::npos ? std::string_view{} : list.substr(comma + 1);
   }

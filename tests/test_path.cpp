@@ -191,12 +191,12 @@ TEST(Roulette, EndsPaths) {
 
 constexpr float albedo = 0.6f;
 
-// A wide floor in y = 0, of which the camera sees the origin, from the side.
+// A floor in y = 0, of which the camera sees the origin, from the side.
 SceneDescription lit_floor(const Material& material = DiffuseMaterial{glm::vec3(albedo)},
-                           glm::vec3 eye = {3, 2, 1}) {
+                           glm::vec3 eye = {3, 2, 1}, float half_size = 50) {
   SceneDescription d;
   d.name = "floor";
-  add_rectangle(d, {0, 0, 0}, {0, 0, 50}, {50, 0, 0}, add_material(d, material));
+  add_rectangle(d, {0, 0, 0}, {0, 0, half_size}, {half_size, 0, 0}, add_material(d, material));
   look_closely(d, eye, {0, 0, 0});
   return d;
 }
@@ -485,6 +485,24 @@ TEST(Mis, GlossySurfacesUnderSeveralLights) {
     const Plan plan{.spp = 128, .depth = depth};
     expect_mean(channel_means(scene, plan), expected, 3e-3);
   }
+}
+
+TEST(Mis, GlossySurfacesUnderASkyAndALamp) {
+  const glm::vec3 eye(-3, 3, 0), centre(2, 2.2f, 0.1f);
+  ConductorMaterial metal;
+  metal.alpha = glm::vec2(0.4f);
+  SceneDescription d = lit_floor(metal, eye, 3);  // so that both lights are chosen often
+  d.environment = glm::vec3(5.0f);
+  add_sphere(d, centre, 1.0f, lamp(d), Emission{glm::vec3(60.0f)});
+  const Scene scene = build(std::move(d));
+  const auto part = [&](glm::vec3 axis, double cos_max) {
+    return quadrature(load_conductor(scene.data().materials, std::int32_t(0)), local(axis),
+                      local(eye), cos_max)[0];
+  };
+  const double distance = double(glm::length(centre));
+  const double expected = 5.0 * part({3, 3, 0}, -1.0) +
+                          (60.0 - 5.0) * part(centre, std::sqrt(1.0 - 1.0 / (distance * distance)));
+  expect_mean(channel_means(scene, {.spp = 256, .seeds = 64}), expected, 2e-3);
 }
 
 // A closed room of metal and light: two sizes of tiling of the same emitting wall agree.
