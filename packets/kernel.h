@@ -18,7 +18,8 @@ struct PathSettings {
   int depth = 5;
   int roulette_depth = 5;
   LaneLayout lanes;
-  // Embree's coherent flag on shadow rays. It decides how rays are traced, never what they hit.
+  // Embree's coherent flag on the first interaction's shadow rays. It decides how rays are traced,
+  // never what they hit.
   bool coherent_shadows = false;
 };
 

@@ -172,7 +172,8 @@ void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
     shade_kind<W, MaterialKind::Diffuse>(c);
     shade_kind<W, MaterialKind::Conductor>(c);
     shade_kind<W, MaterialKind::Coated>(c);
-    trace_shadows<W>(*job.scene, job.path.coherent_shadows, wave.shadows, wave.paths, counts);
+    trace_shadows<W>(*job.scene, camera && job.path.coherent_shadows, wave.shadows, wave.paths,
+                     counts);
   }
   deposit(job, wave.paths, counts);
 }

@@ -56,8 +56,8 @@ LaneLayout choose_lanes(const RenderSettings& settings) {
   return settings.lanes_auto ? LaneLayout{} : settings.lanes;
 }
 
-// The flag pays on shadow rays while lanes aim at nearly the same point of a light; beyond, it
-// costs up to a quarter of the speed.
+// The flag pays on the first interaction's shadow rays while lanes aim at nearly the same point of
+// a light; with larger weights, or further along the paths, it costs up to a quarter of the speed.
 bool coherent_shadows(const SamplerState& state, double weight) {
   return state.shared && weight <= 1.0 / 16.0;
 }

@@ -282,6 +282,9 @@
       `${s.sampler} is biased: how it mixes pilot and main image depends, pixel by pixel, on the pilot itself.`));
     const unbiased = scene.samplers.filter((s) => !s.biased).map((s) => s.sampler);
     if (unbiased.length) list.push(`Unbiased: ${unbiased.join(", ")}.`);
+    list.push("These metrics compare pixel by pixel and do not see structure: a sequence that pixels share " +
+      "makes errors alike in neighbouring pixels, which the eye finds before noise of the same size. " +
+      "Look at the images too.");
     list.push(`Reference: ${scene.reference.origin}.` + (scene.reference.relmse_estimate === null
       ? " Its own error is not known." : ` Its own relMSE is about ${number(scene.reference.relmse_estimate)}, ` +
         "estimated from the two halves; it is part of every error above."));
