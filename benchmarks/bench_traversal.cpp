@@ -88,9 +88,9 @@ double total(const std::vector<Queue>& queues) {
   return rays;
 }
 
-void report(benchmark::State& loop, double rays, const TileCounts& counts, int width) {
+void report(benchmark::State& loop, double rays, const TileCounts& counts) {
   loop.counters["rays"] = benchmark::Counter(rays, benchmark::Counter::kIsIterationInvariantRate);
-  loop.counters["lanes"] = double(counts.packet_rays) / (double(counts.packets) * width);
+  loop.counters["lanes"] = double(counts.active_lanes) / double(counts.lanes);
 }
 
 template <int W>
@@ -103,7 +103,7 @@ void closest_hits(benchmark::State& loop, std::string sampler, bool bounce, bool
     for (const RayQueue& q : queues) intersect<W>(scene().data(), coherent, q, *hits, counts);
     benchmark::ClobberMemory();
   }
-  report(loop, total(queues), counts, W);
+  report(loop, total(queues), counts);
 }
 
 template <int W>
@@ -117,7 +117,7 @@ void shadow_rays(benchmark::State& loop, std::string sampler, bool coherent) {
     }
     benchmark::ClobberMemory();
   }
-  report(loop, total(r.shadows), counts, W);
+  report(loop, total(r.shadows), counts);
 }
 
 template <int W>

@@ -4,7 +4,7 @@
 #include "core/fresnel.h"
 
 #include <algorithm>
-#include <type_traits>
+#include <bit>
 
 namespace lockstep {
 namespace {
@@ -78,7 +78,7 @@ void append_shape(FlatScene& flat, const Shape& shape) {
     flat.spheres.push_back(sphere.radius);
   }
   flat.geometries.push_back(g);
-  flat.first_triangle.push_back(g.first_triangle);
+  flat.first_triangle.push_back(mesh ? g.first_triangle : 0);
   flat.material.push_back(shape.material);
   flat.first_light.push_back(-1);
   flat.is_sphere.push_back(g.is_sphere);
@@ -105,8 +105,10 @@ FlatScene flatten(const SceneDescription& description) {
   for (const Material& m : description.materials) append_material(flat, m);
   for (const Shape& shape : description.shapes) append_shape(flat, shape);
   append_normals(flat, description);
-  append(flat.positions, glm::vec3(0.0f));  // Embree reads 16 bytes per vertex
   flatten_lights(description, flat);
+  // Embree reads 16 bytes per vertex; kernels may look up triangle 0 for lanes on spheres.
+  append(flat.positions, glm::vec3(0.0f));
+  flat.triangles.insert(flat.triangles.end(), 3, 0);
   flatten_camera(description.camera, description.film, flat);
   return flat;
 }
@@ -133,9 +135,36 @@ Features find_features(const SceneDescription& description, const FlatScene& fla
   return f;
 }
 
+std::uint64_t fingerprint(const FlatScene& flat) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, a word at a time
+  const auto add = [&](const auto& values) {
+    hash = (hash ^ values.size()) * 0x100000001b3u;
+    for (const auto value : values) {
+      hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x100000001b3u;
+      hash ^= hash >> 29;
+    }
+  };
+  const CameraData& c = flat.camera;
+  std::vector<float> camera{float(c.width), float(c.height)};
+  for (const glm::vec3 v : {c.origin, c.right, c.down, c.corner}) append(camera, v);
+  using Floats = std::initializer_list<const std::vector<float>*>;
+  for (const auto* values :
+       Floats{&flat.positions, &flat.normals, &flat.spheres, &flat.material_parameters,
+              &flat.light_rows, &flat.filter_x, &flat.filter_y, &camera}) {
+    add(*values);
+  }
+  for (const auto* values :
+       {&flat.triangles, &flat.first_triangle, &flat.material, &flat.first_light, &flat.is_sphere,
+        &flat.is_smooth, &flat.material_kinds, &flat.light_kinds}) {
+    add(*values);
+  }
+  return hash;
+}
+
 SceneData view(const FlatScene& flat, const Features& features) {
   SceneData d;
   d.triangles = flat.triangles.data();
+  d.positions = flat.positions.data();
   d.normals = flat.normals.data();
   d.light_of_primitive = flat.light_of_primitive.data();
   d.geometry = {flat.first_triangle.data(), flat.material.data(),  flat.first_light.data(),

@@ -16,7 +16,7 @@ struct FlatGeometry {
 struct FlatScene {
   std::vector<float> positions;         // xyz per vertex, and one vertex of padding for Embree
   std::vector<float> normals;           // xyz per vertex; empty where no mesh is smooth
-  std::vector<std::int32_t> triangles;  // three indices each, over all meshes
+  std::vector<std::int32_t> triangles;  // three indices each, over all meshes, and one of padding
   std::vector<FlatGeometry> geometries;
   std::vector<std::int32_t> first_triangle, material, first_light, is_sphere, is_smooth;
   std::vector<float> spheres;  // centre and radius per geometry
@@ -34,6 +34,9 @@ struct FlatScene {
 FlatScene flatten(const SceneDescription& description);
 
 Features find_features(const SceneDescription& description, const FlatScene& flat);
+
+// Of every number in `flat`: scenes that differ anywhere have different fingerprints.
+std::uint64_t fingerprint(const FlatScene& flat);
 
 // Pointers into `flat`, which must outlive them. The Embree scene is left for the caller to set.
 SceneData view(const FlatScene& flat, const Features& features);

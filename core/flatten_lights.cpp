@@ -110,21 +110,40 @@ Light environment_light(glm::vec3 radiance, float radius) {
   return l;
 }
 
-// Probabilities proportional to power; equal where no light has a usable one.
-void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
+// Probabilities in proportion to power (alike where no light has a usable one), in whole steps of
+// the 2^-24 that a sample resolves, at least one: what a row states is exactly what is drawn.
+std::vector<double> light_cdf(const std::vector<Light>& lights) {
   double total = 0.0;
-  for (const Light& l : lights) total += l.power;
+  for (const Light& l : lights) total += double(l.power);
   const bool usable = total > 0.0 && std::isfinite(total);
-  double below = 0.0;
-  for (const Light& l : lights) {
-    const double p = usable ? double(l.power) / total : 1.0 / double(lights.size());
+  std::vector<double> weights;
+  for (const Light& l : lights) weights.push_back(usable ? double(l.power) / total : 1.0);
+  const double step = 0x1p-24;
+  double sum = 0.0, below = 0.0;
+  for (double& w : weights) {
+    if (w > 0.0) w += step;
+    sum += w;
+  }
+  std::vector<double> cdf{0.0};
+  for (const double w : weights) {
+    below += w / sum;
+    cdf.push_back(std::floor(below / step + 1e-6) * step);
+  }
+  cdf.back() = 1.0;
+  return cdf;
+}
+
+void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
+  const std::vector<double> cdf = light_cdf(lights);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Light& l = lights[i];
     flat.light_kinds.push_back(std::int32_t(l.kind));
-    flat.light_cdf.push_back(float(below));
+    flat.light_cdf.push_back(float(cdf[i]));
     for (const glm::vec3 v : {l.corner, l.edge1, l.edge2, l.normal, l.radiance}) {
       flat.light_rows.insert(flat.light_rows.end(), {v.x, v.y, v.z});
     }
-    flat.light_rows.insert(flat.light_rows.end(), {l.area, float(p), l.side, 0.0f, 0.0f});
-    below += p;
+    const auto probability = float(cdf[i + 1] - cdf[i]);
+    flat.light_rows.insert(flat.light_rows.end(), {l.area, probability, l.side, 0.0f, 0.0f});
   }
   flat.light_cdf.push_back(1.0f);
 }

@@ -1,6 +1,6 @@
 // Counter-based random numbers: a value is a hash of what it is for, never of what came before.
-// Source: Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", pcg4d and pcg3d, which pass
-// the usual batteries over their whole domain.
+// Source: Jarzynski and Olano 2020, "Hash Functions for GPU Rendering", pcg4d and pcg3d, chosen
+// there for their quality at this speed.
 #pragma once
 
 #include "core/simd.h"

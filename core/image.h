@@ -35,6 +35,10 @@ Image read_image(const std::string& path);
 // Reads the header's settings (those that write_image stored).
 Metadata read_metadata(const std::string& path);
 
+// True for the extensions that write_image knows: .exr and .hdr as float; .png, .jpg and some more
+// as 8-bit sRGB.
+bool can_write_image(const std::string& path);
+
 // Writes float EXR (or what the extension asks for; 8-bit formats get the sRGB curve).
 // The file appears whole or not at all: it is written beside its place and renamed. Throws Error.
 void write_image(const std::string& path, const Image& image, const Metadata& metadata = {});

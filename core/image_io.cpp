@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 namespace lockstep {
 namespace {
@@ -93,8 +94,8 @@ Image read_pixels(OIIO::ImageInput& input, const std::string& path) {
 
 enum class Depth { Float, Byte };
 
-// What the formats that can be encoded in memory hold; throws for any other extension.
-Depth depth_of(const std::string& path) {
+// What the formats that can be encoded in memory hold; nothing for any other extension.
+std::optional<Depth> depth_of(const std::string& path) {
   std::string extension = fs::path(path).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   for (const char* known : {".exr", ".hdr"}) {
@@ -103,6 +104,11 @@ Depth depth_of(const std::string& path) {
   for (const char* known : {".png", ".jpg", ".jpeg", ".webp", ".tga", ".bmp", ".ppm"}) {
     if (extension == known) return Depth::Byte;
   }
+  return std::nullopt;
+}
+
+Depth known_depth(const std::string& path) {
+  if (const auto depth = depth_of(path)) return *depth;
   throw Error(path + ": cannot write this kind of image: use .exr, .png, .jpg or .hdr");
 }
 
@@ -110,7 +116,7 @@ OIIO::ImageSpec output_spec(const Image& image, const Metadata& metadata, Depth 
   OIIO::ImageSpec spec(image.width, image.height, image.channels,
                        depth == Depth::Float ? OIIO::TypeFloat : OIIO::TypeUInt8);
   spec.attribute("Software", "lockstep");
-  spec.attribute("DateTime", "");  // no time stamp: equal images are equal files
+  spec.attribute("DateTime", "");  // OpenImageIO would stamp the file
   if (depth == Depth::Float) {
     spec.attribute("compression", "zip");
   } else {
@@ -135,7 +141,7 @@ std::vector<unsigned char> quantised(const Image& image) {
 
 std::vector<unsigned char> encoded(const std::string& path, const Image& image,
                                    const Metadata& metadata) {
-  const Depth depth = depth_of(path);
+  const Depth depth = known_depth(path);
   const auto output = OIIO::ImageOutput::create(path);
   if (!output) throw Error(path + ": cannot write the image: " + one_line(OIIO::geterror()));
   std::vector<unsigned char> file;
@@ -204,6 +210,8 @@ Metadata read_metadata(const std::string& path) {
   }
   return metadata;
 }
+
+bool can_write_image(const std::string& path) { return depth_of(path).has_value(); }
 
 void write_image(const std::string& path, const Image& image, const Metadata& metadata) {
   if (image.width <= 0 || image.height <= 0 || image.channels <= 0) {

@@ -81,6 +81,7 @@ struct Scene::Storage {
   DeviceHandle device;
   SceneHandle scene;
   SceneData data;
+  std::uint64_t fingerprint = 0;
 };
 
 Scene::Scene(SceneDescription description, const std::string& embree_isa)
@@ -91,6 +92,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   }
   s.flat = flatten(description);
   s.features = find_features(description, s.flat);
+  s.fingerprint = lockstep::fingerprint(s.flat);
   description.shapes.clear();
   s.description = std::move(description);
 
@@ -117,6 +119,7 @@ Scene::Scene(Scene&&) noexcept = default;
 const SceneDescription& Scene::description() const { return storage_->description; }
 const SceneData& Scene::data() const { return storage_->data; }
 const Features& Scene::features() const { return storage_->features; }
-std::size_t Scene::triangle_count() const { return storage_->flat.triangles.size() / 3; }
+std::size_t Scene::triangle_count() const { return storage_->flat.triangles.size() / 3 - 1; }
+std::uint64_t Scene::fingerprint() const { return storage_->fingerprint; }
 
 }  // namespace lockstep

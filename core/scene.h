@@ -4,6 +4,7 @@
 #include "core/scene_data.h"
 #include "core/scene_description.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ class Scene {
   const SceneData& data() const;                // for kernels
   const Features& features() const;
   std::size_t triangle_count() const;
+  std::uint64_t fingerprint() const;  // of all that images of the scene depend on
 
  private:
   struct Storage;

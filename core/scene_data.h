@@ -37,7 +37,7 @@ struct LightTable {
 
 // Per Embree geometry id.
 struct GeometryTable {
-  const std::int32_t* first_triangle = nullptr;  // of the global triangle array
+  const std::int32_t* first_triangle = nullptr;  // of the global triangle array; 0 for spheres
   const std::int32_t* material = nullptr;
   const std::int32_t* first_light = nullptr;  // into light_of_primitive; -1: does not emit
   const std::int32_t* is_sphere = nullptr;
@@ -62,6 +62,7 @@ struct CameraData {
 struct SceneData {
   void* embree_scene = nullptr;             // RTCScene
   const std::int32_t* triangles = nullptr;  // three vertex indices each
+  const float* positions = nullptr;         // per vertex
   const float* normals = nullptr;           // per vertex
   const std::int32_t* light_of_primitive = nullptr;
   GeometryTable geometry;

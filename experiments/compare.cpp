@@ -214,7 +214,7 @@ Comparison compare(const CompareSettings& settings, const CompareProgress& progr
     RenderSettings render_settings = settings.render;
     render_settings.depth = result.depth;
     const double reference_work =
-        has_reference(settings, result) ? 0.0 : double(reference_spp(settings));
+        has_reference(settings, result, scene) ? 0.0 : double(reference_spp(settings));
     const double total = reference_work + settings.seeds * work_per_seed(settings);
     const auto show = [&](double work, std::string_view label) {
       return !progress ||

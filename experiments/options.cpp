@@ -67,7 +67,7 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
       ->capture_default_str();
   add("--lanes", options.lanes, "XxYxS",
       "Rays that share packets: pixels across x pixels down x samples of\n"
-      "each, such as 4x4x1, 2x2x4 or 1x1x16, or auto: the sampler's")
+      "each, such as 4x4x1, 2x2x4 or 1x1x16, or auto: 4x4x1")
       ->capture_default_str();
   add("--isa", options.isa, "ISA",
       "Instruction set of the kernels: sse4, avx2, avx512, or auto: the\n"

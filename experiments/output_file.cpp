@@ -1,10 +1,10 @@
 #include "experiments/output_file.h"
 
 #include "core/error.h"
+#include "core/image.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -35,13 +35,8 @@ void check_writable(const std::string& path) {
 }
 
 void check_writable_image(const std::string& path) {
-  static const char* const known[] = {".exr", ".hdr",  ".pfm", ".png",
-                                      ".jpg", ".jpeg", ".tif", ".tiff"};
-  std::string extension = fs::path(path).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  if (std::find(std::begin(known), std::end(known), extension) == std::end(known)) {
-    throw UsageError(
-        fmt::format("{}: an image file ends in .exr, .hdr, .pfm, .png, .jpg or .tif", path));
+  if (!can_write_image(path)) {
+    throw UsageError(fmt::format("{}: an image file ends in .exr, .hdr, .png or .jpg", path));
   }
   check_writable(path);
 }

@@ -24,16 +24,10 @@ std::string reference_path(const CompareSettings& settings, const SceneCompariso
 }
 
 // Everything the image depends on, in one line; a scene file counts with its size and age.
-std::string reference_key(const CompareSettings& settings, const SceneComparison& comparison) {
-  std::string file;
-  std::error_code error;
-  const auto written = fs::last_write_time(comparison.scene, error);
-  if (!error) {
-    file = fmt::format(" written {} size {}", written.time_since_epoch().count(),
-                       fs::file_size(comparison.scene, error));
-  }
-  return fmt::format("{}{} {}x{} depth {} roulette {} spp {} isa {} version {}", comparison.scene,
-                     file, comparison.width, comparison.height, comparison.depth,
+std::string reference_key(const CompareSettings& settings, const SceneComparison& comparison,
+                          const Scene& scene) {
+  return fmt::format("scene {:016x} {}x{} depth {} roulette {} spp {} isa {} version {}",
+                     scene.fingerprint(), comparison.width, comparison.height, comparison.depth,
                      settings.render.roulette_depth, reference_spp(settings),
                      name(settings.render.isa), version());
 }
@@ -89,13 +83,14 @@ int reference_spp(const CompareSettings& settings) {
   return std::max(2, spp + spp % 2);
 }
 
-bool has_reference(const CompareSettings& settings, const SceneComparison& comparison) {
+bool has_reference(const CompareSettings& settings, const SceneComparison& comparison,
+                   const Scene& scene) {
   if (!settings.reference_file.empty()) return true;
   const std::string path = reference_path(settings, comparison);
   if (!fs::exists(path)) return false;
   const Metadata metadata = read_metadata(path);
   const auto key = metadata.find("reference_key");
-  return key != metadata.end() && key->second == reference_key(settings, comparison);
+  return key != metadata.end() && key->second == reference_key(settings, comparison, scene);
 }
 
 Reference make_reference(const CompareSettings& settings, const SceneComparison& comparison,
@@ -106,7 +101,7 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
   Reference reference;
   reference.file = reference_path(settings, comparison);
   reference.spp = reference_spp(settings);
-  const bool cached = has_reference(settings, comparison);
+  const bool cached = has_reference(settings, comparison, scene);
   reference.origin = rendered_origin(reference.spp, cached);
   if (cached) {
     reference.image = read_image(reference.file);
@@ -123,7 +118,7 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
   }
   auto [image, relmse] = average(halves[0], halves[1]);
   write_image(reference.file, image,
-              {{"reference_key", reference_key(settings, comparison)},
+              {{"reference_key", reference_key(settings, comparison, scene)},
                {"reference_relmse", fmt::format("{:.9g}", relmse)},
                {"scene", comparison.scene},
                {"sampler", "owen"},

@@ -19,6 +19,7 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
                          const Progress& progress);
 
 // True where make_reference will find a finished image.
-bool has_reference(const CompareSettings& settings, const SceneComparison& comparison);
+bool has_reference(const CompareSettings& settings, const SceneComparison& comparison,
+                   const Scene& scene);
 
 }  // namespace lockstep

@@ -28,6 +28,14 @@ struct RenderOptions {
 // Everything about the command line that can be wrong is found before the scene is read.
 void check_outputs(const RenderOptions& options, const SamplerSpec& sampler) {
   check_writable_image(options.output);
+  const std::string* outputs[] = {&options.output, &options.stats, &options.weights};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (!outputs[i]->empty() && *outputs[i] == *outputs[j]) {
+        throw UsageError(fmt::format("{}: named for two outputs; give each its own", *outputs[i]));
+      }
+    }
+  }
   if (!options.stats.empty()) check_writable(options.stats);
   if (options.weights.empty()) return;
   if (sampler.weight_source != WeightSource::Map) {
@@ -147,7 +155,7 @@ void add_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE");
   command.add_flag("--resume", options.resume,
                    "Keep the state in FILE.state, and go on from it if it is there:\n"
-                   "after an interruption, or with more --spp");
+                   "after an interruption, or with more --spp (rcs: with a fixed pilot=N)");
   command.add_flag("--quiet", options.quiet,
                    "No progress and no summary; warnings and errors only");
   add_renderer_options(command, options.renderer);

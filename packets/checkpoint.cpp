@@ -8,6 +8,7 @@
 namespace lockstep {
 namespace {
 
+// Raise the number when RenderState or what a sample's value is changes.
 constexpr std::string_view magic = "lockstep film 1\n";
 
 template <class T>
@@ -34,8 +35,10 @@ void for_each_part(S& state, F f) {
 }  // namespace
 
 bool load_checkpoint(const std::string& path, const std::string& key, RenderState& state) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return false;
   std::ifstream in(path, std::ios::binary);
-  if (!in) return false;
+  if (!in) throw Error(path + ": cannot read the saved film; check its permissions");
   std::string found_magic(magic.size(), '\0'), found_key(key.size(), '\0');
   read(in, found_magic.data(), found_magic.size());
   std::uint64_t key_size = 0;
@@ -44,10 +47,14 @@ bool load_checkpoint(const std::string& path, const std::string& key, RenderStat
     throw Error(path + ": not a saved film; remove it to start anew");
   if (key_size == key.size()) read(in, found_key.data(), found_key.size());
   if (found_key != key) {
-    throw Error(path + ": saved with other settings; use them again, or remove it to start anew");
+    throw Error(path +
+                ": saved with another scene or other settings (for rcs, a pilot that follows "
+                "spp is one: give pilot=N); use them again, or remove it to start anew");
   }
   for_each_part(state, [&](auto* data, std::size_t count) { read(in, data, count); });
-  if (!in) throw Error(path + ": the saved film is cut off; remove it to start anew");
+  if (!in || in.peek() != std::char_traits<char>::eof()) {
+    throw Error(path + ": the saved film is damaged; remove it to start anew");
+  }
   return true;
 }
 

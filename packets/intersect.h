@@ -91,7 +91,7 @@ void intersect(const SceneData& scene, bool coherent, const RayQueue& rays, HitA
                TileCounts& counts) {
   using V = Float<W>;
   RTCIntersectContext context = make_context(coherent);
-  alignas(64) RTCRayHitNt<W> packet;
+  alignas(64) RTCRayHitNt<W> packet{};
   alignas(64) std::int32_t valid[W];
   for (int i = 0; i < rays.count; i += W) {
     set_valid<W>(valid, i, rays.count);
@@ -113,8 +113,8 @@ void intersect(const SceneData& scene, bool coherent, const RayQueue& rays, HitA
     store(hits.u + i, load<V>(packet.hit.u));
     store(hits.v + i, load<V>(packet.hit.v));
   }
-  counts.packets += std::uint64_t((rays.count + W - 1) / W);
-  counts.packet_rays += std::uint64_t(rays.count);
+  counts.lanes += std::uint64_t((rays.count + W - 1) / W * W);
+  counts.active_lanes += std::uint64_t(rays.count);
 }
 
 // Adds the radiance of every shadow ray that reaches its light.
@@ -134,8 +134,8 @@ void trace_shadows(const SceneData& scene, bool coherent, const ShadowQueue& sha
     add_radiance(paths, load<Int<W>>(shadows.path + i), load3<V>(shadows.radiance, i), lit);
   }
   counts.rays.shadow += std::uint64_t(shadows.count);
-  counts.packets += std::uint64_t((shadows.count + W - 1) / W);
-  counts.packet_rays += std::uint64_t(shadows.count);
+  counts.lanes += std::uint64_t((shadows.count + W - 1) / W * W);
+  counts.active_lanes += std::uint64_t(shadows.count);
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

@@ -33,8 +33,8 @@ struct FilmView {
 
 struct TileCounts {
   RayCounts rays;
-  std::uint64_t packets = 0;      // packets traced
-  std::uint64_t packet_rays = 0;  // rays in them
+  std::uint64_t lanes = 0;         // of all packets traced
+  std::uint64_t active_lanes = 0;  // of which carried a ray
   std::uint64_t nonfinite = 0;
   static constexpr int kept = 8;
   BadSample bad[kept];  // the first min(nonfinite, kept)

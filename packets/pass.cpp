@@ -46,8 +46,8 @@ void add(PassTotals& to, const PassTotals& from) {
   t.rays.camera += f.rays.camera;
   t.rays.bounce += f.rays.bounce;
   t.rays.shadow += f.rays.shadow;
-  t.packets += f.packets;
-  t.packet_rays += f.packet_rays;
+  t.lanes += f.lanes;
+  t.active_lanes += f.active_lanes;
   t.nonfinite += f.nonfinite;
   to.cpu_seconds += from.cpu_seconds;
 }
@@ -61,7 +61,7 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
   tbb::enumerable_thread_specific<Worker> workers;
   std::mutex report;
   int done = 0;
-  std::atomic<bool> stopped = false;
+  std::atomic<bool> stopped = false, skipped = false;
 
   const auto trace = [&](int column, int row) {
     Worker& worker = workers.local();
@@ -84,14 +84,18 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
         [&](const tbb::blocked_range2d<int>& range) {
           for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
             for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
-              if (!stopped) trace(column, row);
+              if (stopped) {
+                skipped = true;
+              } else {
+                trace(column, row);
+              }
             }
           }
         },
         tbb::simple_partitioner());
   });
   for (const Worker& worker : workers) add(totals, worker.totals);
-  if (stopped) return false;
+  if (skipped) return false;
   film.samples += pass.samples;
   return true;
 }

@@ -25,7 +25,8 @@ struct Pass {
 
 // Adds samples [film.samples, film.samples + pass.samples) to the film. `tile_done` is called after
 // each tile, from one thread at a time, with the share of this pass that is done; once it returns
-// false no further tile begins, film.samples stays, and the function returns false.
+// false no further tile begins. Where that left tiles out, film.samples stays, and the function
+// returns false.
 bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
               const std::function<bool(double)>& tile_done);
 

@@ -24,19 +24,19 @@ struct LaneLayout {
   int samples = 1;
 };
 
-// "auto" or "XxYxS" with powers of two whose product is 4 to 256. Throws UsageError.
+// "auto" or "XxYxS", powers of two whose product is at most 256. Throws UsageError.
 LaneLayout parse_lane_layout(std::string_view text);
 
 struct RenderSettings {
   std::uint32_t seed = 0;
   int spp = 16;               // samples per pixel in all, pilot included
-  double time_seconds = 0.0;  // if positive: stop at the first pass boundary past this wall time
+  double time_seconds = 0.0;  // if positive: as many samples as fit into this wall time
   int depth = 5;              // surface interactions that are lit; 1 is direct light only
   int roulette_depth = 5;     // Russian roulette from this many interactions on
   int threads = 0;            // 0: all cores
   int width = 0;              // SIMD lanes: 1, 4, 8, 16; 0: the instruction set's default
   LaneLayout lanes;
-  bool lanes_auto = true;  // the layout follows from the sampler
+  bool lanes_auto = true;     // 4x4x1, near the best layout wherever measured
   Isa isa = choose_isa();
   // If not empty: the film is kept in this file as the render goes on, and a render that finds it
   // there continues it. Throws Error where it was made with other settings.

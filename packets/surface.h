@@ -22,42 +22,51 @@ LOCKSTEP_INLINE Vec3<V> normalize_any(const Vec3<V>& a) {
   return normalize(a * (V(1.0f) / largest));
 }
 
-// Rounding moves a hit off its surface by some ulps of the largest number in play: the origin, the
-// hit, or the size of the triangle, which its normal's length tells. Rays leave from outside that.
-inline constexpr float offset_scale = 0x1p-18f;
+// A point interpolated between a triangle's corners is off its plane by at most seven roundings of
+// the largest coordinate (Pharr, Jakob and Humphreys 2023, section 6.8.4), wherever the ray came
+// from. Rays leave from outside that.
+inline constexpr float offset_scale = 0x1p-21f;
+
+// Where a ray hit, and how large the coordinates are that this was computed from.
+template <class V>
+struct HitPoint {
+  Vec3<V> position;
+  V magnitude;
+};
+
+// Values at the corners of the lanes' triangles, of three floats per vertex.
+template <class V>
+struct Corners {
+  Vec3<V> a, b, c;
+
+  LOCKSTEP_INLINE Vec3<V> at(V u, V v) const { return fma(u, b, fma(v, c, a * (V(1.0f) - u - v))); }
+};
+
+template <class I>
+LOCKSTEP_INLINE Corners<FloatOf<I>> load_corners(const float* values, const Vec3<I>& vertices) {
+  return {gather_vec3(values, vertices.x, 3), gather_vec3(values, vertices.y, 3),
+          gather_vec3(values, vertices.z, 3)};
+}
 
 template <class V>
-LOCKSTEP_INLINE V offset_distance(const Vec3<V>& from, const Vec3<V>& hit, const Vec3<V>& normal) {
-  const V size = sqrt(max_component(abs(normal)));
-  return V(offset_scale) * max(max(max_component(abs(from)), max_component(abs(hit))), size);
+LOCKSTEP_INLINE V largest_coordinate(const Corners<V>& p) {
+  return max(max(max_component(abs(p.a)), max_component(abs(p.b))), max_component(abs(p.c)));
 }
 
-// The interpolated vertex normal of the lanes' triangles, not unit.
+// Spheres: the hit is put back onto the sphere, whose normal there is exact.
 template <class I>
-LOCKSTEP_INLINE Vec3<FloatOf<I>> interpolated_normal(const SceneData& scene, const HitArray& hits,
-                                                     I ray, I geometry, I primitive) {
-  using V = FloatOf<I>;
-  const I triangle = (gather(scene.geometry.first_triangle, geometry) + primitive) * I(3);
-  const Vec3<V> n0 = gather_vec3(scene.normals, gather(scene.triangles, triangle), 3);
-  const Vec3<V> n1 = gather_vec3(scene.normals, gather(scene.triangles + 1, triangle), 3);
-  const Vec3<V> n2 = gather_vec3(scene.normals, gather(scene.triangles + 2, triangle), 3);
-  const V u = gather(hits.u, ray), v = gather(hits.v, ray);
-  return fma(u, n1, fma(v, n2, n0 * (V(1.0f) - u - v)));
-}
-
-// Spheres: the hit is put back onto the sphere, whose normal there is exact; its length, like a
-// triangle's, is the square of the shape's size.
-template <class I>
-LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, I geometry, Vec3<FloatOf<I>>& hit,
+LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, I geometry,
+                                   const Vec3<FloatOf<I>>& on_ray, HitPoint<FloatOf<I>>& hit,
                                    Vec3<FloatOf<I>>& normal) {
   using V = FloatOf<I>;
   const auto sphere = gather(scene.geometry.is_sphere, geometry) == I(1);
   if (none(sphere)) return;
   const Vec3<V> centre = gather_vec3(scene.geometry.spheres, geometry, 4);
   const V radius = gather(scene.geometry.spheres + 3, geometry * I(4));
-  const Vec3<V> n = normalize_any<V>(hit - centre);
-  hit = select<V>(sphere, fma(radius, n, centre), hit);
-  normal = select<V>(sphere, n * (radius * radius), normal);
+  const Vec3<V> n = normalize_any<V>(on_ray - centre);
+  hit.position = select<V>(sphere, fma(radius, n, centre), hit.position);
+  hit.magnitude = select(sphere, max_component(abs(centre)) + radius, hit.magnitude);
+  normal = select<V>(sphere, n, normal);
 }
 
 // The surface that the rays of the queue with these indices hit. Lanes that hit nothing must not
@@ -66,22 +75,29 @@ template <class I>
 LOCKSTEP_INLINE Surface<FloatOf<I>> load_surface(const SceneData& scene, const RayQueue& rays,
                                                  const HitArray& hits, I ray, I geometry) {
   using V = FloatOf<I>;
-  const Vec3<V> from = gather3(rays.origin, ray), direction = gather3(rays.direction, ray);
-  Vec3<V> hit = fma(gather(hits.distance, ray), direction, from);
+  const Vec3<V> direction = gather3(rays.direction, ray);
+  const I triangle =
+      (gather(scene.geometry.first_triangle, geometry) + gather(hits.primitive, ray)) * I(3);
+  const Vec3<I> vertices(gather(scene.triangles, triangle), gather(scene.triangles + 1, triangle),
+                         gather(scene.triangles + 2, triangle));
+  const V u = gather(hits.u, ray), v = gather(hits.v, ray);
+  const Corners<V> corners = load_corners(scene.positions, vertices);
+  HitPoint<V> hit{corners.at(u, v), largest_coordinate(corners)};
   Vec3<V> normal = gather3(hits.normal, ray);
-  if (scene.spheres) refine_sphere(scene, geometry, hit, normal);
-  const V offset = offset_distance(from, hit, normal);
+  if (scene.spheres) {
+    const Vec3<V> on_ray = fma(gather(hits.distance, ray), direction, gather3(rays.origin, ray));
+    refine_sphere(scene, geometry, on_ray, hit, normal);
+  }
 
   Surface<V> s;
   const Vec3<V> unit = normalize_any(normal);
   const Vec3<V> away = -direction;
   s.geometric_normal = select<V>(dot(unit, away) < V(0.0f), -unit, unit);
-  s.origin = fma(offset, s.geometric_normal, hit);
+  s.origin = fma(V(offset_scale) * hit.magnitude, s.geometric_normal, hit.position);
 
   Vec3<V> shading = s.geometric_normal;
   if (scene.smooth_normals) {
-    const Vec3<V> n =
-        normalize_any(interpolated_normal(scene, hits, ray, geometry, gather(hits.primitive, ray)));
+    const Vec3<V> n = normalize_any(load_corners(scene.normals, vertices).at(u, v));
     const Vec3<V> facing = select<V>(dot(n, s.geometric_normal) < V(0.0f), -n, n);
     // Where interpolation turns the normal away from the viewer, the geometric one serves.
     const auto usable =

@@ -5,13 +5,12 @@
 namespace lockstep {
 
 inline constexpr int pixel_pair = 0;  // position in the pixel filter
-inline constexpr int lens_pair = 1;   // kept for thin lenses
 
 // The pairs of a surface interaction.
 enum class Purpose { Light, Bsdf, Choice, Roulette };  // Choice: which light, which lobe
 
 // `bounce` counts interactions from 0.
-constexpr int sample_pair(int bounce, Purpose purpose) { return 2 + 4 * bounce + int(purpose); }
+constexpr int sample_pair(int bounce, Purpose purpose) { return 1 + 4 * bounce + int(purpose); }
 
 // Pairs are numbered below 4096 (see random_point).
 inline constexpr int max_depth = 1020;

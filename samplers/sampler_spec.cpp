@@ -91,7 +91,8 @@ float parse_number(std::string_view key, std::string_view value) {
 int parse_count(std::string_view key, std::string_view value) {
   const float x = parse_number(key, value);
   if (x != std::floor(x) || x > 65536.0f) {
-    throw UsageError(fmt::format("sampler option {}={} needs a whole number", key, value));
+    throw UsageError(
+        fmt::format("sampler option {}={} needs a whole number of at most 65536", key, value));
   }
   return int(x);
 }
@@ -99,7 +100,7 @@ int parse_count(std::string_view key, std::string_view value) {
 // One option: its key, what it applies to, its text and how to set it.
 struct Option {
   std::string_view key, values, meaning;
-  bool shared_only;
+  bool map_only;  // says how the map of weights is made or used
   void (*set)(SamplerSpec&, std::string_view key, std::string_view value);
   std::string (*get)(const SamplerSpec&);
 };
@@ -114,14 +115,14 @@ const std::array<Option, 8>& options() {
   using S = SamplerSpec;
   using T = std::string_view;
   static const std::array<Option, 8> list{{
-      {"sequence", "random|owen", "the sequence u_k", true,
+      {"sequence", "random|owen", "the sequence u_k", false,
        [](S& s, T k, T v) { s.sequence = parse_choice<Sequence>(k, v); },
        [](const S& s) { return word(s.sequence); }},
       {"offset", "none|fresh|constant",
-       "the perturbation u_{i,k}: none, new for each k, or one per pixel", true,
+       "the perturbation u_{i,k}: none, new for each k, or one per pixel", false,
        [](S& s, T k, T v) { s.perturbation = parse_choice<Perturbation>(k, v); },
        [](const S& s) { return word(s.perturbation); }},
-      {"weight", "map|0..1", "w: a map from a pilot, or one number for all pixels", true,
+      {"weight", "map|0..1", "w: a map from a pilot, or one number for all pixels", false,
        [](S& s, T k, T v) {
          s.weight_source = v == "map" ? WeightSource::Map : WeightSource::Constant;
          if (v != "map") s.weight = parse_number(k, v);
@@ -153,7 +154,7 @@ const Preset& find_preset(std::string_view name) {
   throw UsageError(fmt::format("unknown sampler '{}'; choose from {}", name, known));
 }
 
-void apply_option(SamplerSpec& spec, std::string_view item) {
+const Option& apply_option(SamplerSpec& spec, std::string_view item) {
   const std::size_t equals = item.find('=');
   if (equals == std::string_view::npos) {
     throw UsageError(fmt::format("sampler option '{}' needs the form key=value", item));
@@ -161,12 +162,12 @@ void apply_option(SamplerSpec& spec, std::string_view item) {
   const std::string_view key = item.substr(0, equals), value = item.substr(equals + 1);
   for (const Option& option : options()) {
     if (option.key != key) continue;
-    if (option.shared_only && !spec.shared) {
+    if (!spec.shared) {
       throw UsageError(
           fmt::format("sampler {} has no option {}: its pixels share no sequence", spec.name, key));
     }
     option.set(spec, key, value);
-    return;
+    return option;
   }
   std::string known;
   for (const Option& option : options()) known += fmt::format(" {}", option.key);
@@ -179,12 +180,16 @@ SamplerSpec parse_sampler(std::string_view text) {
   const std::size_t colon = text.find(':');
   SamplerSpec spec = find_preset(text.substr(0, colon)).spec;
   if (colon == std::string_view::npos) return spec;
-  std::string_view rest = text.substr(colon + 1);
+  std::string_view rest = text.substr(colon + 1), map_option;
   while (true) {
     const std::size_t comma = rest.find(',');
-    apply_option(spec, rest.substr(0, comma));
+    if (apply_option(spec, rest.substr(0, comma)).map_only) map_option = rest.substr(0, comma);
     if (comma == std::string_view::npos) break;
     rest = rest.substr(comma + 1);
+  }
+  if (spec.weight_source != WeightSource::Map && !map_option.empty()) {
+    throw UsageError(
+        fmt::format("{}: {} has no effect without a map; set weight=map", text, map_option));
   }
   if (spec.weight_source == WeightSource::Map && spec.perturbation == Perturbation::None) {
     throw UsageError(
@@ -219,13 +224,20 @@ std::string sampler_help() {
     text += fmt::format("  {:<8} {}\n           ({})\n", p.spec.name, p.summary, p.paper);
     if (!p.spec.shared) continue;
     std::string defaults;
-    for (const Option& o : options()) defaults += fmt::format(" {}={}", o.key, o.get(p.spec));
+    const bool map = p.spec.weight_source == WeightSource::Map;
+    for (const Option& o : options()) {
+      if (map || !o.map_only) defaults += fmt::format(" {}={}", o.key, o.get(p.spec));
+    }
     text += fmt::format("           defaults:{}\n", defaults);
   }
   text += "\nOptions of samplers that share a sequence, as in rcs:c=4,offset=constant\n";
   for (const Option& o : options()) {
     text += fmt::format("  {:<8} {:<20} {}\n", o.key, o.values, o.meaning);
   }
+  text +=
+      "\nAs published: cpt:sequence=random and rcs:sequence=random,offset=fresh. The defaults keep "
+      "a\n"
+      "low-discrepancy sequence's stratification and have less error at equal time.\n";
   return text;
 }
 
@@ -241,6 +253,7 @@ std::vector<std::string> split_sampler_list(std::string_view list) {
     } else {
       result.back().append(",").append(item);
     }
+    if (comma == list.size() - 1) result.emplace_back();  // an empty item, for the parser to refuse
     list = comma == std::string_view::npos ? std::string_view{} : list.substr(comma + 1);
   }
   return result;

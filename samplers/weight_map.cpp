@@ -18,16 +18,25 @@ void for_window(const Image& image, int cx, int cy, int radius, F f) {
   }
 }
 
-void gaussian_pixel(const Image& in, int cx, int cy, float* out) {
-  std::array<float, 3> sum{};
-  float total = 0.0f;
-  for_window(in, cx, cy, 2, [&](int x, int y) {
-    const auto d2 = float((x - cx) * (x - cx) + (y - cy) * (y - cy));
-    const float weight = std::exp(-0.5f * d2);
-    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * in.at(x, y)[c];
-    total += weight;
-  });
-  for (std::size_t c = 0; c < 3; ++c) out[c] = sum[c] / total;
+// The Gaussian along one axis: out(x, y) from in(x + k dx, y + k dy), k = -2..2.
+Image gaussian_along(const Image& in, int dx, int dy) {
+  constexpr std::array<float, 3> taps{1.0f, 0.60653066f, 0.13533528f};  // exp(-k^2 / 2)
+  Image out(in.width, in.height);
+  for (int y = 0; y < in.height; ++y) {
+    for (int x = 0; x < in.width; ++x) {
+      std::array<float, 3> sum{};
+      float total = 0.0f;
+      for (int k = -2; k <= 2; ++k) {
+        const int nx = x + k * dx, ny = y + k * dy;
+        if (nx < 0 || ny < 0 || nx >= in.width || ny >= in.height) continue;
+        const float tap = taps[size_t(std::abs(k))];
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += tap * in.at(nx, ny)[c];
+        total += tap;
+      }
+      for (std::size_t c = 0; c < 3; ++c) out.at(x, y)[c] = sum[c] / total;
+    }
+  }
+  return out;
 }
 
 // The lower middle value where the window is cut to an even number of pixels.
@@ -46,12 +55,10 @@ void median_pixel(const Image& in, int cx, int cy, float* out) {
 
 Image filter_pilot(const Image& pilot, WeightFilter filter) {
   if (filter == WeightFilter::None) return pilot;
+  if (filter == WeightFilter::Gaussian) return gaussian_along(gaussian_along(pilot, 1, 0), 0, 1);
   Image out(pilot.width, pilot.height);
   for (int y = 0; y < pilot.height; ++y) {
-    for (int x = 0; x < pilot.width; ++x) {
-      filter == WeightFilter::Gaussian ? gaussian_pixel(pilot, x, y, out.at(x, y))
-                                       : median_pixel(pilot, x, y, out.at(x, y));
-    }
+    for (int x = 0; x < pilot.width; ++x) median_pixel(pilot, x, y, out.at(x, y));
   }
   return out;
 }

@@ -318,6 +318,12 @@ TEST_F(Resume, OtherSettingsAreRefused) {
   }
   const Scene wider = build(resized(builtin::make_cornell(), 71, 50));
   EXPECT_NE(refusal(wider, "rcs:pilot=2", resuming(8)).find("other settings"), std::string::npos);
+  SceneDescription brighter = resized(builtin::make_cornell(), 70, 50);  // the name stays
+  for (Shape& shape : brighter.shapes) {
+    if (shape.emission) shape.emission->radiance *= 2.0f;
+  }
+  EXPECT_NE(refusal(build(brighter), "rcs:pilot=2", resuming(8)).find("another scene"),
+            std::string::npos);
   const Scene other = build(resized(builtin::make_furnace(), 70, 50));
   EXPECT_NE(refusal(other, "rcs:pilot=2", resuming(8)).find(file_), std::string::npos);
 }

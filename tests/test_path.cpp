@@ -309,6 +309,48 @@ TEST(DirectLight, IsBlockedByWhatIsInTheWay) {
   expect_mean(channel_means(build(d), {.spp = 64}), 2.0 * double(albedo), 1e-3);
 }
 
+// Rays leave a surface just outside the rounding error of its own coordinates: neither a scene far
+// from the origin nor a camera far from the scene moves what lies close above a surface.
+TEST(RayOffset, IsSmallFarFromTheOriginAndFromTheCamera) {
+  const auto mean_at = [](glm::vec3 origin, float camera_distance) {
+    SceneDescription d = lit_floor();
+    add_lamp(d, 0.5f, 0.5f, 0.125f, {glm::vec3(5.0f)});
+    for (Shape& shape : d.shapes) {
+      for (glm::vec3& p : std::get<TriangleMesh>(shape.geometry).positions) p += origin;
+    }
+    const glm::vec3 from = glm::normalize(glm::vec3(-1.0f, 0.05f, 0.0f)) * camera_distance;
+    look_closely(d, origin + from, origin);
+    d.camera.fov_degrees = 0.02f / camera_distance;
+    RenderSettings settings;
+    settings.spp = 64;
+    settings.depth = 1;
+    return mean_of(render(build(std::move(d)), parse_sampler("owen"), settings).image);
+  };
+  const double expected = mean_at(glm::vec3(0.0f), 1.0f);
+  ASSERT_GT(expected, 1.0);
+  EXPECT_NEAR(mean_at(glm::vec3(8192.0f, 0.0f, 0.0f), 1.0f) / expected, 1.0, 2e-2);
+  EXPECT_NEAR(mean_at(glm::vec3(0.0f, 8192.0f, 0.0f), 1.0f) / expected, 1.0, 2e-2);
+  EXPECT_NEAR(mean_at(glm::vec3(0.0f), 20000.0f) / expected, 1.0, 1e-2);
+}
+
+// What a light's row says is the probability with which samples of 24 bits choose it.
+TEST(Lights, AreChosenWithTheProbabilityTheyState) {
+  SceneDescription d = lit_floor();
+  for (int i = 0; i < 300; ++i) {
+    add_sphere(d, {float(i), 3.0f, 0.0f}, 0.1f, lamp(d),
+               Emission{glm::vec3(i == 7 ? 1e-9f : 1.0f)});
+  }
+  const Scene scene = build(std::move(d));
+  const LightTable& lights = scene.data().lights;
+  ASSERT_EQ(lights.count, 300);
+  for (int i = 0; i < lights.count; ++i) {
+    const float probability = lights.rows[i * light_stride + 16];
+    EXPECT_EQ(probability, lights.cdf[i + 1] - lights.cdf[i]);
+    EXPECT_GE(probability, 0x1p-24f) << "a light that shines must be found";
+    EXPECT_EQ(lights.cdf[i] * 0x1p24f, std::floor(lights.cdf[i] * 0x1p24f));
+  }
+}
+
 TEST(Emission, LeavesOneSideOnly) {
   SceneDescription d = lit_floor();
   add_rectangle(d, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, lamp(d), Emission{glm::vec3(5.0f)});  // up

@@ -167,12 +167,15 @@ TEST(SamplerSpec, SamplersWithoutASharedSequenceHaveNoOptions) {
 TEST(SamplerSpec, AMapWithoutAnOffsetIsRefused) {
   EXPECT_REFUSED("rcs:offset=none", "a weight map needs an offset to weigh; set offset=");
   EXPECT_REFUSED("cpt:weight=map", "a weight map needs an offset to weigh");
+  EXPECT_REFUSED("cpt:weight=0.5", "a weight needs an offset to weigh");
+  EXPECT_REFUSED("cpt:c=4", "c=4 has no effect without a map");
+  EXPECT_REFUSED("rcs:c=4,weight=0.5", "c=4 has no effect without a map");
 }
 
 TEST(SamplerSpec, OnlyAMapWithWeightedCombinationIsBiased) {
   EXPECT_TRUE(parse_sampler("random").unbiased());
   EXPECT_TRUE(parse_sampler("rcs").unbiased());
-  EXPECT_TRUE(parse_sampler("rcs:weight=0.5,combine=weight").unbiased());
+  EXPECT_TRUE(parse_sampler("rcs:weight=0.5").unbiased());
   EXPECT_FALSE(parse_sampler("rcs:combine=weight").unbiased());
 }
 

@@ -535,8 +535,8 @@ TEST(Perturb, AddsModuloOne) {
 }
 
 TEST(Dimensions, NoTwoPurposesShareAPair) {
-  std::set<int> pairs{pixel_pair, lens_pair};
-  int count = 2;
+  std::set<int> pairs{pixel_pair};
+  int count = 1;
   for (int bounce = 0; bounce < max_depth; ++bounce) {
     for (const Purpose p : {Purpose::Light, Purpose::Bsdf, Purpose::Choice, Purpose::Roulette}) {
       EXPECT_TRUE(pairs.insert(sample_pair(bounce, p)).second);
