@@ -27,14 +27,10 @@ struct BsdfSample {
   V pdf;
 };
 
-// Parameter `column` of the lanes' materials.
+// Parameters `column` to `column` + 3 of the lanes' materials.
 template <class I>
-LOCKSTEP_INLINE FloatOf<I> material_scalar(const MaterialTable& t, I index, int column) {
-  return gather(t.parameters + column, index * I(material_stride));
-}
-template <class I>
-LOCKSTEP_INLINE Vec3<FloatOf<I>> material_color(const MaterialTable& t, I index, int column) {
-  return gather_vec3(t.parameters + column, index, material_stride);
+LOCKSTEP_INLINE Rows<FloatOf<I>> material_rows(const MaterialTable& t, I index, int column) {
+  return gather_rows(t.parameters + column, index * I(material_stride));
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

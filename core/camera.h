@@ -19,10 +19,10 @@ LOCKSTEP_INLINE V filter_offset(const float* table, V u) {
 }
 
 // Unit direction through the pixel whose column and row are given; u picks the point in the filter.
-template <class V>
+template <class V, FeatureMask F = all_features>
 LOCKSTEP_INLINE Vec3<V> camera_direction(const CameraData& camera, V column, V row, Vec2<V> u) {
   V x = column + u.x, y = row + u.y;
-  if (!camera.box_filter) {
+  if ((F & bit(Feature::FilterTable)) && camera.filter_x) {
     x = column + V(0.5f) + filter_offset(camera.filter_x, u.x);
     y = row + V(0.5f) + filter_offset(camera.filter_y, u.y);
   }

@@ -1,5 +1,6 @@
 #include "core/flatten.h"
 
+#include "core/coincidence.h"
 #include "core/error.h"
 #include "core/fresnel.h"
 
@@ -78,16 +79,34 @@ void append_shape(FlatScene& flat, const Shape& shape) {
     flat.spheres.push_back(sphere.radius);
   }
   flat.geometries.push_back(g);
-  flat.first_triangle.push_back(mesh ? g.first_triangle : 0);
-  flat.material.push_back(shape.material);
-  flat.first_light.push_back(-1);
-  flat.is_sphere.push_back(g.is_sphere);
-  flat.is_smooth.push_back(mesh && !mesh->normals.empty());
+  const int flags = (mesh ? 0 : geometry_is_sphere) |
+                    (mesh && !mesh->normals.empty() ? geometry_is_smooth : 0) |
+                    flat.material_kinds[size_t(shape.material)] << geometry_kind_shift;
+  flat.geometry_rows.insert(flat.geometry_rows.end(),
+                            {mesh ? g.first_triangle : 0, shape.material, -1, flags});
+}
+
+// What the shapes need.
+FeatureMask shape_features(const FlatScene& flat) {
+  FeatureMask set = 0;
+  for (std::size_t i = 3; i < flat.geometry_rows.size(); i += geometry_stride) {
+    const int flags = flat.geometry_rows[i];
+    if (flags & geometry_is_sphere) set |= bit(Feature::Spheres);
+    if (flags & geometry_is_smooth) set |= bit(Feature::SmoothNormals);
+    set |= bit(material_feature(MaterialKind(flags >> geometry_kind_shift)));
+  }
+  return set;
+}
+
+FeatureMask light_features(const FlatScene& flat) {
+  FeatureMask set = flat.light_kinds.size() > 1 ? bit(Feature::LightChoice) : 0u;
+  for (const std::int32_t kind : flat.light_kinds) set |= bit(light_feature(LightKind(kind)));
+  return set;
 }
 
 // Normals for every vertex as soon as one mesh has them; the others' stay unused.
 void append_normals(FlatScene& flat, const SceneDescription& description) {
-  if (std::ranges::count(flat.is_smooth, 1) == 0) return;
+  if (!(flat.features & bit(Feature::SmoothNormals))) return;
   flat.normals.reserve(flat.positions.size());
   for (const Shape& shape : description.shapes) {
     const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
@@ -98,41 +117,29 @@ void append_normals(FlatScene& flat, const SceneDescription& description) {
   }
 }
 
+// Embree reads 16 bytes per vertex, kernels rows of four values; lanes on spheres look up triangle 0.
+void pad(FlatScene& flat) {
+  append(flat.positions, glm::vec3(0.0f));
+  if (!flat.normals.empty()) append(flat.normals, glm::vec3(0.0f));
+  flat.triangles.insert(flat.triangles.end(), 4, 0);
+  flat.material_parameters.insert(flat.material_parameters.end(), 3, 0.0f);
+}
+
 }  // namespace
 
 FlatScene flatten(const SceneDescription& description) {
   FlatScene flat;
   for (const Material& m : description.materials) append_material(flat, m);
   for (const Shape& shape : description.shapes) append_shape(flat, shape);
+  flat.features = shape_features(flat);
   append_normals(flat, description);
   flatten_lights(description, flat);
-  // Embree reads 16 bytes per vertex; kernels may look up triangle 0 for lanes on spheres.
-  append(flat.positions, glm::vec3(0.0f));
-  flat.triangles.insert(flat.triangles.end(), 3, 0);
+  flat.features |= light_features(flat);
+  flat.coincident = find_coincident_triangles(flat.positions.data(), flat.triangles.data(),
+                                              flat.triangles.size() / 3);
+  pad(flat);
   flatten_camera(description.camera, description.film, flat);
   return flat;
-}
-
-Features find_features(const SceneDescription& description, const FlatScene& flat) {
-  const auto has_kind = [&](const std::vector<std::int32_t>& kinds, auto kind) {
-    return std::ranges::find(kinds, std::int32_t(kind)) != kinds.end();
-  };
-  const auto has_material = [&](MaterialKind kind) {
-    return std::ranges::any_of(description.shapes, [&](const Shape& s) {
-      return flat.material_kinds[size_t(s.material)] == std::int32_t(kind);
-    });
-  };
-  Features f;
-  f.smooth_normals = !flat.normals.empty();
-  f.spheres = has_kind(flat.is_sphere, 1);
-  f.diffuse = has_material(MaterialKind::Diffuse);
-  f.conductor = has_material(MaterialKind::Conductor);
-  f.coated = has_material(MaterialKind::Coated);
-  f.environment = flat.environment_light >= 0;
-  f.area_lights = flat.light_kinds.size() > (f.environment ? 1u : 0u);
-  f.many_lights = flat.light_kinds.size() > 1;
-  f.filter_table = !flat.camera.box_filter;
-  return f;
 }
 
 std::uint64_t fingerprint(const FlatScene& flat) {
@@ -154,34 +161,29 @@ std::uint64_t fingerprint(const FlatScene& flat) {
     add(*values);
   }
   for (const auto* values :
-       {&flat.triangles, &flat.first_triangle, &flat.material, &flat.first_light, &flat.is_sphere,
-        &flat.is_smooth, &flat.material_kinds, &flat.light_kinds}) {
+       {&flat.triangles, &flat.geometry_rows, &flat.material_kinds}) {
     add(*values);
   }
   return hash;
 }
 
-SceneData view(const FlatScene& flat, const Features& features) {
+SceneData view(const FlatScene& flat) {
   SceneData d;
   d.triangles = flat.triangles.data();
   d.positions = flat.positions.data();
   d.normals = flat.normals.data();
   d.light_of_primitive = flat.light_of_primitive.data();
-  d.geometry = {flat.first_triangle.data(), flat.material.data(),  flat.first_light.data(),
-                flat.is_sphere.data(),      flat.is_smooth.data(), flat.spheres.data()};
-  d.materials = {flat.material_kinds.data(), flat.material_parameters.data()};
-  d.lights = {int(flat.light_kinds.size()), flat.light_kinds.data(), flat.light_rows.data(),
-              flat.light_cdf.data()};
+  if (!flat.coincident.empty()) d.coincident = flat.coincident.data();
+  d.geometry = {flat.geometry_rows.data(), flat.spheres.data()};
+  d.materials = {flat.material_parameters.data()};
+  d.lights = {int(flat.light_kinds.size()), flat.light_rows.data(), flat.light_cdf.data()};
   d.camera = flat.camera;
-  d.camera.filter_x = flat.filter_x.data();
-  d.camera.filter_y = flat.filter_y.data();
+  if (!flat.filter_x.empty()) {
+    d.camera.filter_x = flat.filter_x.data();
+    d.camera.filter_y = flat.filter_y.data();
+  }
   d.environment = flat.environment_light;
-  d.smooth_normals = features.smooth_normals;
-  d.spheres = features.spheres;
-  d.area_lights = features.area_lights;
-  d.has_material[int(MaterialKind::Diffuse)] = features.diffuse;
-  d.has_material[int(MaterialKind::Conductor)] = features.conductor;
-  d.has_material[int(MaterialKind::Coated)] = features.coated;
+  d.features = flat.features;
   return d;
 }
 

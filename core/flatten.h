@@ -18,7 +18,8 @@ struct FlatScene {
   std::vector<float> normals;           // xyz per vertex; empty where no mesh is smooth
   std::vector<std::int32_t> triangles;  // three indices each, over all meshes, and one of padding
   std::vector<FlatGeometry> geometries;
-  std::vector<std::int32_t> first_triangle, material, first_light, is_sphere, is_smooth;
+  std::vector<std::int32_t> geometry_rows;
+  std::vector<std::uint8_t> coincident;  // see core/coincidence.h
   std::vector<float> spheres;  // centre and radius per geometry
   std::vector<std::int32_t> material_kinds;
   std::vector<float> material_parameters;
@@ -27,19 +28,18 @@ struct FlatScene {
   std::vector<float> light_rows;
   std::vector<float> light_cdf;
   std::int32_t environment_light = -1;
+  FeatureMask features = 0;
   CameraData camera;
   std::vector<float> filter_x, filter_y;
 };
 
 FlatScene flatten(const SceneDescription& description);
 
-Features find_features(const SceneDescription& description, const FlatScene& flat);
-
 // Of every number in `flat`: scenes that differ anywhere have different fingerprints.
 std::uint64_t fingerprint(const FlatScene& flat);
 
 // Pointers into `flat`, which must outlive them. The Embree scene is left for the caller to set.
-SceneData view(const FlatScene& flat, const Features& features);
+SceneData view(const FlatScene& flat);
 
 // core/flatten_lights.cpp: fills the light tables from the emitting shapes and the environment.
 // Call once the geometry tables are filled.

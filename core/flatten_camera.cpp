@@ -65,7 +65,8 @@ void flatten_camera(const CameraDescription& camera, const FilmDescription& film
   c.corner = rotation * glm::vec3(-half.x, half.y, 1.0f);
 
   const PixelFilter& filter = film.filter;
-  c.box_filter = filter.kind == PixelFilter::Kind::Box && filter.radius == glm::vec2(0.5f);
+  if (filter.kind == PixelFilter::Kind::Box && filter.radius == glm::vec2(0.5f)) return;
+  flat.features |= bit(Feature::FilterTable);
   flat.filter_x = inverse_distribution(filter, filter.radius.x);
   flat.filter_y = inverse_distribution(filter, filter.radius.y);
 }

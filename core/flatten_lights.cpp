@@ -139,11 +139,14 @@ void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
     const Light& l = lights[i];
     flat.light_kinds.push_back(std::int32_t(l.kind));
     flat.light_cdf.push_back(float(cdf[i]));
-    for (const glm::vec3 v : {l.corner, l.edge1, l.edge2, l.normal, l.radiance}) {
-      flat.light_rows.insert(flat.light_rows.end(), {v.x, v.y, v.z});
-    }
-    const auto probability = float(cdf[i + 1] - cdf[i]);
-    flat.light_rows.insert(flat.light_rows.end(), {l.area, probability, l.side, 0.0f, 0.0f});
+    const auto append = [&](glm::vec3 v, float last) {
+      flat.light_rows.insert(flat.light_rows.end(), {v.x, v.y, v.z, last});
+    };
+    append(l.corner, l.area);
+    append(l.edge1, float(cdf[i + 1] - cdf[i]));
+    append(l.edge2, l.side);
+    append(l.normal, float(int(l.kind)));
+    append(l.radiance, 0.0f);
   }
   flat.light_cdf.push_back(1.0f);
 }
@@ -155,7 +158,7 @@ void flatten_lights(const SceneDescription& description, FlatScene& flat) {
   for (std::size_t g = 0; g < description.shapes.size(); ++g) {
     const Shape& shape = description.shapes[g];
     if (!shape.emission || shape.emission->radiance == glm::vec3(0.0f)) continue;
-    flat.first_light[g] = std::int32_t(flat.light_of_primitive.size());
+    flat.geometry_rows[g * geometry_stride + 2] = std::int32_t(flat.light_of_primitive.size());
     const int first = int(lights.size());
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
       const auto added = mesh_lights(*mesh, *shape.emission, first, flat.light_of_primitive);

@@ -22,17 +22,19 @@ template <class V>
 struct LightRow {
   Vec3<V> corner, edge1, edge2, normal, radiance;
   V area, probability, side;
+  V kind;  // a LightKind as a number
+
+  LOCKSTEP_INLINE MaskOf<V> is(LightKind k) const { return kind == V(float(int(k))); }
 };
 
 template <class I>
 LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {
-  const auto vec = [&](int column) LOCKSTEP_LAMBDA {
-    return gather_vec3(t.rows + column, index, light_stride);
+  const auto row = [&](int column) LOCKSTEP_LAMBDA {
+    return gather_rows(t.rows + column, index * I(light_stride));
   };
-  const auto scalar = [&](int column) LOCKSTEP_LAMBDA {
-    return gather(t.rows + column, index * I(light_stride));
-  };
-  return {vec(0), vec(3), vec(6), vec(9), vec(12), scalar(15), scalar(16), scalar(17)};
+  const auto a = row(0), b = row(4), c = row(8), d = row(12), e = row(16);
+  return {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}, {d.x, d.y, d.z}, {e.x, e.y, e.z},
+          a.w,             b.w,             c.w,             d.w};
 }
 
 // The light whose interval of the cumulative distribution holds u in [0, 1).
@@ -125,21 +127,22 @@ LOCKSTEP_INLINE LightSample<V> sample_environment(const LightRow<V>& light, cons
 }
 
 // A direction from p, with shading frame `frame`, to the lanes' lights.
-template <class V>
+template <class V, FeatureMask F = all_features>
 LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> index,
                                             const Vec3<V>& p, const Frame<V>& frame, Vec2<V> u) {
-  using I = IntOf<V>;
   const LightRow<V> light = load_light(scene.lights, index);
-  const I kind = gather(scene.lights.kinds, index);
   LightSample<V> s{Vec3<V>(V(0.0f)), V(0.0f), Vec3<V>(V(0.0f)), V(0.0f)};
   const auto merge = [&](MaskOf<V> m, const LightSample<V>& other) LOCKSTEP_LAMBDA {
     s = {select<V>(m, other.wi, s.wi), select(m, other.distance, s.distance),
          select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf)};
   };
-  const MaskOf<V> triangle = kind == I(int(LightKind::Triangle));
-  const MaskOf<V> flat = triangle | (kind == I(int(LightKind::Parallelogram)));
-  const MaskOf<V> sphere = kind == I(int(LightKind::Sphere));
-  const MaskOf<V> environment = kind == I(int(LightKind::Environment));
+  const auto of_kind = [&](Feature feature, LightKind kind) LOCKSTEP_LAMBDA {
+    return needs<F>(scene, feature) ? light.is(kind) : MaskOf<V>(false);
+  };
+  const MaskOf<V> triangle = of_kind(Feature::TriangleLights, LightKind::Triangle);
+  const MaskOf<V> flat = triangle | of_kind(Feature::QuadLights, LightKind::Parallelogram);
+  const MaskOf<V> sphere = of_kind(Feature::SphereLights, LightKind::Sphere);
+  const MaskOf<V> environment = of_kind(Feature::Environment, LightKind::Environment);
   if (any(flat)) merge(flat, sample_flat_light(light, triangle, p, u));
   if (any(sphere)) merge(sphere, sample_sphere_light(light, p, u));
   if (any(environment)) merge(environment, sample_environment(light, frame, u));
@@ -153,15 +156,14 @@ struct Emitted {
 };
 
 // What a ray from p along wi receives from the area light it hits at `distance`.
-template <class V>
+template <class V, FeatureMask F = all_features>
 LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, const Vec3<V>& p,
                                      const Vec3<V>& wi, V distance) {
-  using I = IntOf<V>;
   const LightRow<V> light = load_light(scene.lights, index);
-  const MaskOf<V> sphere = gather(scene.lights.kinds, index) == I(int(LightKind::Sphere));
+  const MaskOf<V> sphere = light.is(LightKind::Sphere);
   V cos_light = -dot(light.normal, wi);
   V pdf = solid_angle_pdf(distance, max(abs(cos_light), V(1e-20f)), light.area);
-  if (scene.spheres && any(sphere)) {
+  if (needs<F>(scene, Feature::SphereLights) && any(sphere)) {
     const Vec3<V> to_centre = light.corner - p;
     const V one_minus_cos = sphere_cone(dot(to_centre, to_centre), light.area);
     const MaskOf<V> outside = one_minus_cos > V(0.0f);

@@ -10,26 +10,6 @@
 namespace lockstep {
 namespace {
 
-std::vector<std::pair<std::string, bool>> list(const Features& f) {
-  return {{"smooth-normals", f.smooth_normals},
-          {"spheres", f.spheres},
-          {"diffuse", f.diffuse},
-          {"conductor", f.conductor},
-          {"coated", f.coated},
-          {"area-lights", f.area_lights},
-          {"environment", f.environment},
-          {"light-choice", f.many_lights},
-          {"filter-table", f.filter_table}};
-}
-
-std::vector<std::string> names(const Features& f, bool present) {
-  std::vector<std::string> result;
-  for (const auto& [name, has] : list(f)) {
-    if (has == present) result.push_back(name);
-  }
-  return result;
-}
-
 struct DeviceRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };
@@ -38,6 +18,13 @@ struct SceneRelease {
 };
 using DeviceHandle = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
 using SceneHandle = std::unique_ptr<RTCSceneTy, SceneRelease>;
+
+// On some CPUs Embree traces single rays with narrower instructions than packets, for the sake of
+// their clock rate; then single rays and packets would round differently.
+std::string device_settings(const std::string& isa) {
+  const char* registers = isa == "avx512" ? "simd512" : isa == "avx2" ? "simd256" : "simd128";
+  return "isa=" + isa + ",frequency_level=" + registers;
+}
 
 void check(RTCDevice device) {
   if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
@@ -71,12 +58,8 @@ void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id
 
 }  // namespace
 
-std::vector<std::string> Features::present() const { return names(*this, true); }
-std::vector<std::string> Features::absent() const { return names(*this, false); }
-
 struct Scene::Storage {
   SceneDescription description;  // without its geometry, which `flat` holds
-  Features features;
   FlatScene flat;
   DeviceHandle device;
   SceneHandle scene;
@@ -91,16 +74,15 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
     throw Error(description.name + ": nothing to render: no shape and no light");
   }
   s.flat = flatten(description);
-  s.features = find_features(description, s.flat);
   s.fingerprint = lockstep::fingerprint(s.flat);
   description.shapes.clear();
   s.description = std::move(description);
 
-  s.device.reset(rtcNewDevice(("isa=" + embree_isa).c_str()));
+  s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));
   if (!s.device) throw Error("Embree cannot start for instruction set " + embree_isa);
   s.scene.reset(rtcNewScene(s.device.get()));
-  // Robust: no ray slips between triangles, and every traversal mode reports the same hits to the
-  // last bit. Without it single rays and coherent packets differ on a few rays in a million.
+  // Robust: no ray slips between triangles, and every traversal mode finds the same distances to the
+  // last bit.
   rtcSetSceneFlags(s.scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s.scene.get(), RTC_BUILD_QUALITY_HIGH);
   for (unsigned id = 0; id < s.flat.geometries.size(); ++id) {
@@ -109,7 +91,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   rtcCommitScene(s.scene.get());
   check(s.device.get());
 
-  s.data = view(s.flat, s.features);
+  s.data = view(s.flat);
   s.data.embree_scene = s.scene.get();
 }
 
@@ -118,8 +100,8 @@ Scene::Scene(Scene&&) noexcept = default;
 
 const SceneDescription& Scene::description() const { return storage_->description; }
 const SceneData& Scene::data() const { return storage_->data; }
-const Features& Scene::features() const { return storage_->features; }
-std::size_t Scene::triangle_count() const { return storage_->flat.triangles.size() / 3 - 1; }
+FeatureMask Scene::features() const { return storage_->data.features; }
+std::size_t Scene::triangle_count() const { return (storage_->flat.triangles.size() - 4) / 3; }
 std::uint64_t Scene::fingerprint() const { return storage_->fingerprint; }
 
 }  // namespace lockstep

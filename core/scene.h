@@ -11,22 +11,6 @@
 
 namespace lockstep {
 
-// What a scene contains; kernels skip the stages of what it lacks.
-struct Features {
-  bool smooth_normals = false;
-  bool spheres = false;
-  bool diffuse = false;
-  bool conductor = false;
-  bool coated = false;
-  bool area_lights = false;
-  bool environment = false;
-  bool many_lights = false;   // more than one light: one has to be chosen
-  bool filter_table = false;  // a pixel filter other than a box over the pixel
-
-  std::vector<std::string> present() const;
-  std::vector<std::string> absent() const;
-};
-
 // Owns the arrays that SceneData points into. Immutable after construction; shared by threads.
 class Scene {
  public:
@@ -39,7 +23,7 @@ class Scene {
 
   const SceneDescription& description() const;  // its shapes are moved out: see data()
   const SceneData& data() const;                // for kernels
-  const Features& features() const;
+  FeatureMask features() const;
   std::size_t triangle_count() const;
   std::uint64_t fingerprint() const;  // of all that images of the scene depend on
 

@@ -1,6 +1,9 @@
 // A scene as the kernels see it: plain arrays, indices instead of pointers between objects. Owned
-// by Scene; the same for every instruction set and width.
+// by Scene; the same for every instruction set and width. Kernels read rows four values at a time:
+// every array has three values more than it needs.
 #pragma once
+
+#include "core/features.h"
 
 #include <glm/vec3.hpp>
 
@@ -16,37 +19,50 @@ enum class MaterialKind : std::int32_t { Diffuse, Conductor, Coated };
 inline constexpr int material_kinds = 3;
 inline constexpr int material_stride = 12;
 
+constexpr Feature material_feature(MaterialKind kind) {
+  return Feature(unsigned(Feature::Diffuse) + unsigned(kind));
+}
+
 struct MaterialTable {
-  const std::int32_t* kinds = nullptr;
   const float* parameters = nullptr;
 };
 
 // Rows of LightTable::rows, `light_stride` floats each:
-//   0 corner (centre of a sphere), 3 edge 1, 6 edge 2, 9 unit normal, 12 radiance,
-//   15 area (radius of a sphere), 16 probability of choosing this light,
-//   17 side: +1 emits along the normal (outwards), -1 against it, 0 on both sides.
+//   0 corner (centre of a sphere), 3 area (radius of a sphere)
+//   4 edge 1, 7 probability of choosing this light
+//   8 edge 2, 11 side: +1 emits along the normal (outwards), -1 against it, 0 on both sides
+//   12 unit normal, 15 LightKind as a number
+//   16 radiance
 enum class LightKind : std::int32_t { Parallelogram, Triangle, Sphere, Environment };
 inline constexpr int light_stride = 20;
 
+constexpr Feature light_feature(LightKind kind) {
+  return Feature(unsigned(Feature::QuadLights) + unsigned(kind));
+}
+
 struct LightTable {
   int count = 0;
-  const std::int32_t* kinds = nullptr;
   const float* rows = nullptr;
   const float* cdf = nullptr;  // cdf[i] = probability of choosing a light below i; count + 1 values
 };
 
-// Per Embree geometry id.
+// Rows per Embree geometry id, `geometry_stride` integers each:
+//   0 first triangle in the global array; 0 for spheres
+//   1 material
+//   2 first entry in light_of_primitive; -1: does not emit
+//   3 GeometryFlag bits, and the MaterialKind above them
+inline constexpr int geometry_stride = 4;
+
+enum GeometryFlag : std::int32_t { geometry_is_sphere = 1, geometry_is_smooth = 2 };
+inline constexpr int geometry_kind_shift = 8;
+
 struct GeometryTable {
-  const std::int32_t* first_triangle = nullptr;  // of the global triangle array; 0 for spheres
-  const std::int32_t* material = nullptr;
-  const std::int32_t* first_light = nullptr;  // into light_of_primitive; -1: does not emit
-  const std::int32_t* is_sphere = nullptr;
-  const std::int32_t* is_smooth = nullptr;  // has vertex normals
-  const float* spheres = nullptr;           // centre and radius, 4 floats; zero for meshes
+  const std::int32_t* rows = nullptr;
+  const float* spheres = nullptr;  // centre and radius, 4 floats per geometry; zero for meshes
 };
 
 // Inverse distribution function of the pixel filter along x and y: offsets in pixels at
-// u = i / filter_cells, to be interpolated linearly.
+// u = i / filter_cells, to be interpolated linearly. None for a box over the pixel.
 inline constexpr int filter_cells = 256;
 
 struct CameraData {
@@ -54,7 +70,6 @@ struct CameraData {
   glm::vec3 right{0.0f}, down{0.0f};  // world-space step per pixel
   glm::vec3 corner{0.0f};             // direction (not unit) of the top left corner of pixel (0, 0)
   int width = 0, height = 0;
-  bool box_filter = true;  // of radius 1/2: no table needed
   const float* filter_x = nullptr;
   const float* filter_y = nullptr;
 };
@@ -65,16 +80,30 @@ struct SceneData {
   const float* positions = nullptr;         // per vertex
   const float* normals = nullptr;           // per vertex
   const std::int32_t* light_of_primitive = nullptr;
+  const std::uint8_t* coincident = nullptr;  // per triangle, 1: overlaps another; or no array
   GeometryTable geometry;
   MaterialTable materials;
   LightTable lights;
   CameraData camera;
   std::int32_t environment = -1;  // its index in lights; -1: none
-  // Which stages the scene needs at all (see Features).
-  bool smooth_normals = false;
-  bool spheres = false;
-  bool area_lights = false;
-  bool has_material[material_kinds] = {};
+  FeatureMask features = all_features;
 };
+
+// True where the scene has the feature; false at compile time in kernels for F, a set without it.
+template <FeatureMask F>
+constexpr bool needs(const SceneData& scene, Feature feature) {
+  return (F & bit(feature)) != 0u && (scene.features & bit(feature)) != 0u;
+}
+
+
+inline constexpr FeatureMask area_light_features =
+    feature_set(Feature::QuadLights, Feature::TriangleLights, Feature::SphereLights);
+inline constexpr FeatureMask material_features =
+    feature_set(Feature::Diffuse, Feature::Conductor, Feature::Coated);
+
+template <FeatureMask F>
+constexpr bool has_area_lights(const SceneData& scene) {
+  return (F & scene.features & area_light_features) != 0u;
+}
 
 }  // namespace lockstep

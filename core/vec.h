@@ -3,7 +3,7 @@
 // single ray agree bit for bit.
 #pragma once
 
-#include "core/simd.h"
+#include "core/simd_rows.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -68,11 +68,11 @@ LOCKSTEP_INLINE V luminance(const Vec3<V>& c) {
   return fma(c.x, V(0.2126f), fma(c.y, V(0.7152f), c.z * V(0.0722f)));
 }
 
-// Three floats that lie `stride` apart per index: x = base[i * stride], y and z behind it.
-template <class I>
-LOCKSTEP_INLINE Vec3<FloatOf<I>> gather_vec3(const float* base, I index, int stride) {
-  const I at = index * I(stride);
-  return {gather(base, at), gather(base + 1, at), gather(base + 2, at)};
+// Three values per lane: x = base[index * stride], y and z behind it. Reads one value more.
+template <class T, class I>
+LOCKSTEP_INLINE auto gather_vec3(const T* base, I index, int stride) {
+  const auto row = gather_rows(base, index * I(stride));
+  return Vec3<std::remove_const_t<decltype(row.x)>>(row.x, row.y, row.z);
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

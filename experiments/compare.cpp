@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 // One scene's part of the experiment, while it runs.
-struct Stage {
+struct Phase {
   const CompareSettings& settings;
   SceneComparison& result;
   Scene scene;
@@ -74,8 +74,8 @@ SceneComparison describe(const Scene& scene, const CompareSettings& settings,
   result.height = description.film.height;
   result.depth = settings.depth.value_or(description.defaults.depth);
   result.triangles = scene.triangle_count();
-  result.features = scene.features().present();
-  result.left_out = scene.features().absent();
+  result.features = feature_names(scene.features());
+  result.left_out = feature_names(all_features & ~scene.features());
   result.warnings = description.warnings;
   return result;
 }
@@ -89,35 +89,35 @@ std::string in_directory(const CompareSettings& settings, const std::string& fil
   return (fs::path(settings.directory) / file).string();
 }
 
-void keep_images(Stage& stage, int sampler_index, const RenderResult& render) {
-  const SamplerSpec& sampler = stage.settings.samplers[std::size_t(sampler_index)];
-  const std::string stem = fmt::format("{}-{}-{}spp", stage.result.label,
+void keep_images(Phase& phase, int sampler_index, const RenderResult& render) {
+  const SamplerSpec& sampler = phase.settings.samplers[std::size_t(sampler_index)];
+  const std::string stem = fmt::format("{}-{}-{}spp", phase.result.label,
                                        file_name_safe(to_string(sampler)), render.stats.spp);
   RunImages images{sampler_index, render.stats.spp, stem + ".exr", stem + ".png", ""};
   const Metadata metadata =
-      render_metadata(stage.result.scene, sampler, stage.render_settings, render);
-  write_image(in_directory(stage.settings, images.exr), render.image, metadata);
-  write_image(in_directory(stage.settings, images.png),
-              exposed(render.image, stage.result.exposure));
+      render_metadata(phase.result.scene, sampler, phase.render_settings, render);
+  write_image(in_directory(phase.settings, images.exr), render.image, metadata);
+  write_image(in_directory(phase.settings, images.png),
+              exposed(render.image, phase.result.exposure));
   if (render.weights) {
     images.weights_png = stem + "-weights.png";
-    write_image(in_directory(stage.settings, stem + "-weights.exr"), *render.weights, metadata);
-    write_image(in_directory(stage.settings, images.weights_png), weights_as_grey(*render.weights));
+    write_image(in_directory(phase.settings, stem + "-weights.exr"), *render.weights, metadata);
+    write_image(in_directory(phase.settings, images.weights_png), weights_as_grey(*render.weights));
   }
-  stage.result.images.push_back(images);
+  phase.result.images.push_back(images);
 }
 
 // Renders once with the settings, measures, and appends the row.
-void measure(Stage& stage, int sampler_index, double work_before) {
-  const SamplerSpec& sampler = stage.settings.samplers[std::size_t(sampler_index)];
-  const RenderSettings& settings = stage.render_settings;
+void measure(Phase& phase, int sampler_index, double work_before) {
+  const SamplerSpec& sampler = phase.settings.samplers[std::size_t(sampler_index)];
+  const RenderSettings& settings = phase.render_settings;
   const std::string label =
-      fmt::format("{}: {} at {} spp, seed {} of {}", stage.result.label, to_string(sampler),
-                  settings.spp, settings.seed + 1, stage.settings.seeds);
+      fmt::format("{}: {} at {} spp, seed {} of {}", phase.result.label, to_string(sampler),
+                  settings.spp, settings.seed + 1, phase.settings.seeds);
   const auto show = [&](double fraction) {
-    return stage.progress(work_before + fraction * settings.spp, label);
+    return phase.progress(work_before + fraction * settings.spp, label);
   };
-  const RenderResult render = lockstep::render(stage.scene, sampler, settings, show);
+  const RenderResult render = lockstep::render(phase.scene, sampler, settings, show);
   const RenderStats& stats = render.stats;
   Measurement run;
   run.sampler = sampler_index;
@@ -130,12 +130,12 @@ void measure(Stage& stage, int sampler_index, double work_before) {
   run.lanes = stats.lanes;
   run.lanes_active = stats.lanes_active;
   run.nonfinite = stats.nonfinite;
-  run.errors = evaluate_metrics(stage.result.reference.image, render.image);
-  stage.result.packet_width = stats.width;
-  stage.result.threads = stats.threads;
-  stage.csv.append(stage.result.scene, to_string(sampler), run);
-  stage.result.runs.push_back(run);
-  if (settings.seed == 0) keep_images(stage, sampler_index, render);
+  run.errors = evaluate_metrics(phase.result.reference.image, render.image);
+  phase.result.packet_width = stats.width;
+  phase.result.threads = stats.threads;
+  phase.csv.append(phase.result.scene, to_string(sampler), run);
+  phase.result.runs.push_back(run);
+  if (settings.seed == 0) keep_images(phase, sampler_index, render);
 }
 
 double work_per_seed(const CompareSettings& settings) {
@@ -145,31 +145,31 @@ double work_per_seed(const CompareSettings& settings) {
 }
 
 // First renders touch memory and code for the first time: they are made and thrown away.
-void warm_up(Stage& stage) {
-  RenderSettings settings = stage.render_settings;
-  settings.spp = std::min(4, stage.settings.rungs.front());
-  for (const SamplerSpec& sampler : stage.settings.samplers) {
-    render(stage.scene, sampler, settings,
-           [&](double) { return stage.progress(0.0, stage.result.label + ": warming up"); });
+void warm_up(Phase& phase) {
+  RenderSettings settings = phase.render_settings;
+  settings.spp = std::min(4, phase.settings.rungs.front());
+  for (const SamplerSpec& sampler : phase.settings.samplers) {
+    render(phase.scene, sampler, settings,
+           [&](double) { return phase.progress(0.0, phase.result.label + ": warming up"); });
   }
 }
 
 // Samplers are innermost and change their order, so that a disturbance of the machine falls on
 // all alike. Returns false where the time ran out.
-bool measure_all(Stage& stage, double work, Clock::time_point deadline) {
-  const int samplers = int(stage.settings.samplers.size());
-  const int rungs = int(stage.settings.rungs.size());
+bool measure_all(Phase& phase, double work, Clock::time_point deadline) {
+  const int samplers = int(phase.settings.samplers.size());
+  const int rungs = int(phase.settings.rungs.size());
   Clock::duration longest_seed{};
-  for (int seed = 0; seed < stage.settings.seeds; ++seed) {
+  for (int seed = 0; seed < phase.settings.seeds; ++seed) {
     const Clock::time_point start = Clock::now();
-    if (stage.settings.max_seconds > 0.0 && start + longest_seed > deadline && seed > 0)
+    if (phase.settings.max_seconds > 0.0 && start + longest_seed > deadline && seed > 0)
       return false;
-    stage.render_settings.seed = std::uint32_t(seed);
+    phase.render_settings.seed = std::uint32_t(seed);
     for (int rung = 0; rung < rungs; ++rung) {
-      stage.render_settings.spp = stage.settings.rungs[std::size_t(rung)];
+      phase.render_settings.spp = phase.settings.rungs[std::size_t(rung)];
       for (int i = 0; i < samplers; ++i) {
-        measure(stage, (i + seed + rung) % samplers, work);
-        work += stage.render_settings.spp;
+        measure(phase, (i + seed + rung) % samplers, work);
+        work += phase.render_settings.spp;
       }
     }
     longest_seed = std::max(longest_seed, Clock::now() - start);
@@ -178,18 +178,18 @@ bool measure_all(Stage& stage, double work, Clock::time_point deadline) {
 }
 
 // The reference, then all runs. Returns false where the time ran out.
-bool run_stage(Stage& stage, double reference_work, Clock::time_point deadline) {
+bool run_phase(Phase& phase, double reference_work, Clock::time_point deadline) {
   const auto show = [&](double fraction) {
-    return stage.progress(fraction * reference_work, stage.result.label + ": reference");
+    return phase.progress(fraction * reference_work, phase.result.label + ": reference");
   };
-  stage.result.reference =
-      make_reference(stage.settings, stage.result, stage.scene, stage.render_settings, show);
-  stage.result.exposure = preview_exposure(stage.result.reference.image);
-  stage.result.reference_png = fmt::format("{}-reference.png", stage.result.label);
-  write_image(in_directory(stage.settings, stage.result.reference_png),
-              exposed(stage.result.reference.image, stage.result.exposure));
-  warm_up(stage);
-  return measure_all(stage, reference_work, deadline);
+  phase.result.reference =
+      make_reference(phase.settings, phase.result, phase.scene, phase.render_settings, show);
+  phase.result.exposure = preview_exposure(phase.result.reference.image);
+  phase.result.reference_png = fmt::format("{}-reference.png", phase.result.label);
+  write_image(in_directory(phase.settings, phase.result.reference_png),
+              exposed(phase.result.reference.image, phase.result.exposure));
+  warm_up(phase);
+  return measure_all(phase, reference_work, deadline);
 }
 
 }  // namespace
@@ -220,9 +220,9 @@ Comparison compare(const CompareSettings& settings, const CompareProgress& progr
       return !progress ||
              progress((double(s) + work / total) / double(settings.scenes.size()), label);
     };
-    Stage stage{settings, result, std::move(scene), render_settings, csv, show};
+    Phase phase{settings, result, std::move(scene), render_settings, csv, show};
     try {
-      comparison.complete &= run_stage(stage, reference_work, deadline);
+      comparison.complete &= run_phase(phase, reference_work, deadline);
     } catch (const Cancelled&) {
       comparison.complete = false;
       if (result.runs.empty()) comparison.scenes.pop_back();

@@ -67,8 +67,20 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
       ->capture_default_str();
   add("--lanes", options.lanes, "XxYxS",
       "Rays that share packets: pixels across x pixels down x samples of\n"
-      "each, such as 4x4x1, 2x2x4 or 1x1x16, or auto: 4x4x1")
+      "each, such as 4x4x1, 2x2x4 or 1x1x16, or auto: measured while\n"
+      "rendering. The image is the same")
       ->capture_default_str();
+  add("--traversal", options.traversal, "MODE",
+      "How rays go through Embree: single, packet4, packet8, packet16,\n"
+      "stream1m or streamnm, with -coherent behind it for Embree's coherent\n"
+      "flag, or auto: measured while rendering, by kind of ray and bounce.\n"
+      "The image is the same")
+      ->capture_default_str();
+  command
+      .add_flag("--general", options.general,
+                "Use the kernels for all scenes, not those without the code that this\n"
+                "scene does not need. The image is the same")
+      ->group("Renderer");
   add("--isa", options.isa, "ISA",
       "Instruction set of the kernels: sse4, avx2, avx512, or auto: the\n"
       "widest this CPU has, unless LOCKSTEP_ISA is set")
@@ -82,8 +94,9 @@ RenderSettings render_settings(const RendererOptions& options) {
   settings.roulette_depth = options.roulette_depth;
   settings.threads = options.threads;
   settings.width = options.width == "auto" ? 0 : std::stoi(options.width);
-  settings.lanes_auto = options.lanes == "auto";
-  if (!settings.lanes_auto) settings.lanes = parse_lane_layout(options.lanes);
+  settings.traversal = parse_traversal(options.traversal);
+  settings.specialized = !options.general;
+  if (options.lanes != "auto") settings.lanes = parse_lane_layout(options.lanes);
   return settings;
 }
 

@@ -21,6 +21,8 @@ struct RendererOptions {
   int threads = 0;
   std::string width = "auto";
   std::string lanes = "auto";
+  std::string traversal = "auto";
+  bool general = false;
   std::string isa = "auto";
 };
 

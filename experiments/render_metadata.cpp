@@ -6,10 +6,6 @@
 
 namespace lockstep {
 
-std::string to_string(const LaneLayout& lanes) {
-  return fmt::format("{}x{}x{}", lanes.x, lanes.y, lanes.samples);
-}
-
 Metadata render_metadata(const std::string& scene, const SamplerSpec& sampler,
                          const RenderSettings& settings, const RenderResult& result) {
   const RenderStats& stats = result.stats;

@@ -9,9 +9,6 @@
 
 namespace lockstep {
 
-// "4x4x1": pixels across, pixels down, samples of each.
-std::string to_string(const LaneLayout& lanes);
-
 Metadata render_metadata(const std::string& scene, const SamplerSpec& sampler,
                          const RenderSettings& settings, const RenderResult& result);
 

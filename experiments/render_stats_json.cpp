@@ -4,6 +4,31 @@
 #include "experiments/render_metadata.h"
 
 namespace lockstep {
+namespace {
+
+constexpr const char* kind_names[ray_kinds] = {"camera", "bounce", "shadow"};
+constexpr const char* stage_names[stages] = {"sampling", "traversal", "shading", "film"};
+
+// Rays by kind and the mode that traced them.
+nlohmann::ordered_json traversal_json(const RenderStats& stats) {
+  nlohmann::ordered_json json;
+  for (int kind = 0; kind < ray_kinds; ++kind) {
+    auto& modes = json[kind_names[kind]] = nlohmann::ordered_json::object();
+    for (int mode = 0; mode < traversal_modes; ++mode) {
+      const std::uint64_t rays = stats.traced[kind][mode];
+      if (rays > 0) modes[to_string(traversal_mode(mode))] = rays;
+    }
+  }
+  return json;
+}
+
+nlohmann::ordered_json stages_json(const RenderStats& stats) {
+  nlohmann::ordered_json json;
+  for (int stage = 0; stage < stages; ++stage) json[stage_names[stage]] = stats.stage_seconds[stage];
+  return json;
+}
+
+}  // namespace
 
 nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Scene& scene,
                                          const SamplerSpec& sampler, const RenderSettings& settings,
@@ -29,12 +54,15 @@ nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Sc
             {"bounce", stats.rays.bounce},
             {"shadow", stats.rays.shadow}}},
           {"paths_per_cpu_second", rate},
+          {"traversal", traversal_json(stats)},
+          {"packets", stats.packets},
           {"lanes_active", stats.lanes_active},
+          {"stage_cpu_seconds", stages_json(stats)},
           {"mean_weight", stats.mean_weight},
           {"biased", !sampler.unbiased()},
           {"nonfinite", stats.nonfinite},
-          {"features", scene.features().present()},
-          {"left_out", scene.features().absent()},
+          {"features", feature_names(scene.features())},
+          {"left_out", feature_names(all_features & ~scene.features())},
           {"peak_memory_bytes", peak_memory_bytes()},
           {"version", version()}};
 }

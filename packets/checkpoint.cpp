@@ -9,7 +9,7 @@ namespace lockstep {
 namespace {
 
 // Raise the number when RenderState or what a sample's value is changes.
-constexpr std::string_view magic = "lockstep film 1\n";
+constexpr std::string_view magic = "lockstep film 2\n";
 
 template <class T>
 void write(std::ostream& out, const T* data, std::size_t count) {
@@ -25,8 +25,7 @@ template <class S, class F>
 void for_each_part(S& state, F f) {
   for (auto* film : {&state.pilot, &state.image}) {
     f(&film->samples, 1);
-    f(film->sum.data(), film->sum.size());
-    f(film->count.data(), film->count.size());
+    f(film->sums.data(), film->sums.size());
   }
   f(&state.totals, 1);
   f(&state.wall_seconds, 1);

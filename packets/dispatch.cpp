@@ -3,21 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cstdlib>
 #include <string>
 
 namespace lockstep {
 
-extern const Kernel kernel_sse4_1, kernel_sse4_4, kernel_sse4_8, kernel_sse4_16;
-extern const Kernel kernel_avx2_1, kernel_avx2_4, kernel_avx2_8, kernel_avx2_16;
-extern const Kernel kernel_avx512_1, kernel_avx512_4, kernel_avx512_8, kernel_avx512_16;
+#define LOCKSTEP_KERNELS_OF(isa, apply)                                                       \
+  apply(kernel_##isa##_1) apply(kernel_##isa##_4) apply(kernel_##isa##_8) apply(kernel_##isa##_16) \
+      apply(kernel_##isa##_quad_lit) apply(kernel_##isa##_sky_lit) apply(kernel_##isa##_interior)
+#define LOCKSTEP_KERNELS(apply) \
+  LOCKSTEP_KERNELS_OF(sse4, apply) LOCKSTEP_KERNELS_OF(avx2, apply) LOCKSTEP_KERNELS_OF(avx512, apply)
+
+#define LOCKSTEP_DECLARE(kernel) extern const Kernel kernel;
+LOCKSTEP_KERNELS(LOCKSTEP_DECLARE)
+#undef LOCKSTEP_DECLARE
 
 namespace {
 
 constexpr const Kernel* kernels[] = {
-    &kernel_sse4_1,   &kernel_sse4_4,   &kernel_sse4_8,   &kernel_sse4_16,
-    &kernel_avx2_1,   &kernel_avx2_4,   &kernel_avx2_8,   &kernel_avx2_16,
-    &kernel_avx512_1, &kernel_avx512_4, &kernel_avx512_8, &kernel_avx512_16,
+#define LOCKSTEP_ADDRESS(kernel) &kernel,
+    LOCKSTEP_KERNELS(LOCKSTEP_ADDRESS)
+#undef LOCKSTEP_ADDRESS
 };
 
 bool cpu_runs(Isa isa) {
@@ -73,11 +80,14 @@ std::string embree_isa(Isa isa) { return isa == Isa::Sse4 ? "sse4.2" : std::stri
 
 int default_width(Isa isa) { return isa == Isa::Sse4 ? 4 : isa == Isa::Avx2 ? 8 : 16; }
 
-const Kernel& find_kernel(Isa isa, int width) {
+const Kernel& find_kernel(Isa isa, int width, FeatureMask features) {
   const int wanted = width == 0 ? default_width(isa) : width;
+  const Kernel* best = nullptr;
   for (const Kernel* kernel : kernels) {
-    if (kernel->isa == isa && kernel->width == wanted) return *kernel;
+    if (kernel->isa != isa || kernel->width != wanted || (features & ~kernel->features)) continue;
+    if (!best || std::popcount(kernel->features) < std::popcount(best->features)) best = kernel;
   }
+  if (best) return *best;
   throw UsageError(fmt::format("no kernel of width {}; choose from auto, 1, 4, 8, 16", width));
 }
 

@@ -3,37 +3,39 @@
 namespace lockstep {
 namespace {
 
-// Calls f(channel sum index, pixel) for every value of the image and stores what it returns.
+// Calls f(sums, channel) with the pixel's index of `sums` for every value of the image, and stores
+// what it returns.
 template <class F>
 Image make_image(const Film& film, F f) {
   Image image(film.width, film.height);
-  for (std::size_t pixel = 0; pixel < film.count.size(); ++pixel) {
-    for (std::size_t c = 0; c < 3; ++c)
-      image.pixels[pixel * 3 + c] = float(f(pixel * 3 + c, pixel));
+  for (std::size_t pixel = 0; pixel < film.sums.size() / 4; ++pixel) {
+    for (std::size_t c = 0; c < 3; ++c) image.pixels[pixel * 3 + c] = float(f(pixel * 4, c));
   }
   return image;
 }
 
 double ratio(double sum, double count) { return count > 0.0 ? sum / count : 0.0; }
 
+double pixel_mean(const Film& film, std::size_t at, std::size_t c) {
+  return ratio(film.sums[at + c], film.sums[at + 3]);
+}
+
 }  // namespace
 
 Image mean(const Film& film) {
-  return make_image(film, [&](std::size_t i, std::size_t pixel) {
-    return ratio(film.sum[i], film.count[pixel]);
-  });
+  return make_image(film, [&](std::size_t at, std::size_t c) { return pixel_mean(film, at, c); });
 }
 
 Image mean(const Film& a, const Film& b) {
-  return make_image(a, [&](std::size_t i, std::size_t pixel) {
-    return ratio(a.sum[i] + b.sum[i], double(a.count[pixel]) + double(b.count[pixel]));
+  return make_image(a, [&](std::size_t at, std::size_t c) {
+    return ratio(a.sums[at + c] + b.sums[at + c], a.sums[at + 3] + b.sums[at + 3]);
   });
 }
 
 Image interpolate(const Film& a, const Film& b, const Image& weights) {
-  return make_image(a, [&](std::size_t i, std::size_t pixel) {
-    const double w = double(weights.pixels[pixel]);
-    return w * ratio(a.sum[i], a.count[pixel]) + (1.0 - w) * ratio(b.sum[i], b.count[pixel]);
+  return make_image(a, [&](std::size_t at, std::size_t c) {
+    const double w = double(weights.pixels[at / 4]);
+    return w * pixel_mean(a, at, c) + (1.0 - w) * pixel_mean(b, at, c);
   });
 }
 

@@ -13,13 +13,11 @@ struct Film {
   int width = 0;
   int height = 0;
   std::uint32_t samples = 0;  // per pixel, taken so far
-  std::vector<double> sum;
-  std::vector<std::uint32_t> count;
+  std::vector<double> sums;   // four per pixel
 
   Film() = default;
-  Film(int w, int h)
-      : width(w), height(h), sum(size_t(w) * size_t(h) * 3), count(size_t(w) * size_t(h)) {}
-  FilmView view() { return {width, sum.data(), count.data()}; }
+  Film(int w, int h) : width(w), height(h), sums(size_t(w) * size_t(h) * 4) {}
+  FilmView view() { return {width, sums.data()}; }
 };
 
 // Means of the finite samples; black where a pixel has none.

@@ -1,10 +1,17 @@
-// Compiled once per instruction set and width: LOCKSTEP_WIDTH lanes, exported as LOCKSTEP_KERNEL.
+// Compiled per instruction set, width and set of features: LOCKSTEP_WIDTH lanes for scenes with
+// LOCKSTEP_FEATURES at most, exported as LOCKSTEP_KERNEL.
+#include "packets/feature_sets.h"
 #include "packets/path.h"
 
 namespace lockstep {
 
 extern const Kernel LOCKSTEP_KERNEL;
-const Kernel LOCKSTEP_KERNEL{Isa::LOCKSTEP_ISA_NAME, LOCKSTEP_WIDTH, sizeof(Wave),
-                             trace_tile<LOCKSTEP_WIDTH>, fill_pair<LOCKSTEP_WIDTH>};
+const Kernel LOCKSTEP_KERNEL{Isa::LOCKSTEP_ISA_NAME,
+                             LOCKSTEP_WIDTH,
+                             LOCKSTEP_FEATURES,
+                             sizeof(Wave),
+                             trace_tile<LOCKSTEP_WIDTH, LOCKSTEP_FEATURES>,
+                             replay,
+                             fill_pair<LOCKSTEP_WIDTH>};
 
 }  // namespace lockstep

@@ -3,29 +3,17 @@
 #include "core/cpu_clock.h"
 
 #include <tbb/blocked_range2d.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
-#include <memory>
 #include <mutex>
 #include <new>
 
 namespace lockstep {
 namespace {
-
-// A kernel's working memory and what it counted, one per thread.
-struct Worker {
-  struct Free {
-    void operator()(void* p) const { std::free(p); }
-  };
-  std::unique_ptr<void, Free> scratch;
-  PassTotals totals;
-};
 
 void* scratch_of(Worker& worker, std::size_t bytes) {
   if (!worker.scratch) {
@@ -43,9 +31,12 @@ void add(PassTotals& to, const PassTotals& from) {
   for (std::uint64_t i = 0; i < std::min<std::uint64_t>(f.nonfinite, TileCounts::kept); ++i) {
     if (t.nonfinite + i < TileCounts::kept) t.bad[t.nonfinite + i] = f.bad[i];
   }
-  t.rays.camera += f.rays.camera;
-  t.rays.bounce += f.rays.bounce;
-  t.rays.shadow += f.rays.shadow;
+  for (int kind = 0; kind < ray_kinds; ++kind) {
+    for (int mode = 0; mode < traversal_modes; ++mode) t.traced[kind][mode] += f.traced[kind][mode];
+  }
+  for (int stage = 0; stage < stages; ++stage) t.ticks.of[stage] += f.ticks.of[stage];
+  for (const LayoutCount& layout : f.layouts) count_layout(t, layout);
+  t.packets += f.packets;
   t.lanes += f.lanes;
   t.active_lanes += f.active_lanes;
   t.nonfinite += f.nonfinite;
@@ -54,19 +45,31 @@ void add(PassTotals& to, const PassTotals& from) {
 
 }  // namespace
 
+void count_layout(TileCounts& counts, const LayoutCount& added) {
+  if (added.paths == 0) return;
+  LayoutCount* at = counts.layouts;
+  const LayoutCount* last = std::end(counts.layouts) - 1;
+  while (at != last && at->paths > 0 && at->lanes != added.lanes) ++at;
+  if (at->paths == 0) at->lanes = added.lanes;
+  at->paths += added.paths;
+}
+
 bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
               const std::function<bool(double)>& tile_done) {
   const int columns = (film.width + tile_size - 1) / tile_size;
   const int rows = (film.height + tile_size - 1) / tile_size;
-  tbb::enumerable_thread_specific<Worker> workers;
   std::mutex report;
   int done = 0;
   std::atomic<bool> stopped = false, skipped = false;
 
   const auto trace = [&](int column, int row) {
-    Worker& worker = workers.local();
+    Worker& worker = pass.workers->local();
     const double start = thread_cpu_seconds();
-    TileJob job{pass.scene, pass.sampler, pass.path, film.view()};
+    TileJob job;
+    job.scene = pass.scene, job.sampler = pass.sampler, job.path = pass.path;
+    job.traversal_policy = &worker.traversal, job.layout_policy = &worker.layout;
+    job.log = pass.log;
+    job.film = film.view();
     job.x0 = column * tile_size, job.x1 = std::min(job.x0 + tile_size, film.width);
     job.y0 = row * tile_size, job.y1 = std::min(job.y0 + tile_size, film.height);
     job.first_sample = film.samples;
@@ -94,7 +97,10 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
         },
         tbb::simple_partitioner());
   });
-  for (const Worker& worker : workers) add(totals, worker.totals);
+  for (Worker& worker : *pass.workers) {
+    add(totals, worker.totals);
+    worker.totals = {};
+  }
   if (skipped) return false;
   film.samples += pass.samples;
   return true;

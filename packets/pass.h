@@ -4,7 +4,11 @@
 #include "packets/film.h"
 #include "packets/kernel.h"
 
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstdlib>
 #include <functional>
+#include <memory>
 
 namespace lockstep {
 
@@ -14,10 +18,28 @@ struct PassTotals {
   double cpu_seconds = 0.0;  // thread CPU time inside tiles
 };
 
+// What a thread keeps from tile to tile.
+struct Worker {
+  struct Free {
+    void operator()(void* p) const { std::free(p); }
+  };
+  std::unique_ptr<void, Free> scratch;  // the kernel's working memory
+  TraversalPolicy traversal;
+  LayoutPolicy layout;
+  PassTotals totals;
+
+  Worker(const TraversalPolicy& t, const LayoutPolicy& l) : traversal(t), layout(l) {}
+};
+
+// One per thread that has worked so far. They outlive passes, and so does what they have learnt.
+using Workers = tbb::enumerable_thread_specific<Worker>;
+
 struct Pass {
   const Kernel* kernel = nullptr;
   const SceneData* scene = nullptr;
   const SamplerState* sampler = nullptr;
+  Workers* workers = nullptr;
+  RayLog* log = nullptr;
   PathSettings path;
   std::uint32_t samples = 1;
   int threads = 1;
@@ -26,7 +48,7 @@ struct Pass {
 // Adds samples [film.samples, film.samples + pass.samples) to the film. `tile_done` is called after
 // each tile, from one thread at a time, with the share of this pass that is done; once it returns
 // false no further tile begins. Where that left tiles out, film.samples stays, and the function
-// returns false.
+// returns false. Costs are added to `totals`.
 bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
               const std::function<bool(double)>& tile_done);
 

@@ -5,75 +5,17 @@
 // depends on it, so every width, layout, thread count and tile order gives the same image.
 #pragma once
 
-#include "core/camera.h"
-#include "packets/intersect.h"
+#include "packets/paths.h"
 #include "packets/shade.h"
+#include "packets/traversal.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
-// Lists the job's paths in packet order: blocks of x * y pixels and `samples` samples.
-inline void list_paths(const TileJob& job, PathTable& paths) {
-  const LaneLayout& lanes = job.path.lanes;
-  const int samples = int(job.samples);
-  int n = 0;
-  for (int s0 = 0; s0 < samples; s0 += lanes.samples) {
-    const int s1 = std::min(s0 + lanes.samples, samples);
-    for (int y0 = job.y0; y0 < job.y1; y0 += lanes.y) {
-      const int y1 = std::min(y0 + lanes.y, job.y1);
-      for (int x0 = job.x0; x0 < job.x1; x0 += lanes.x) {
-        const int x1 = std::min(x0 + lanes.x, job.x1);
-        for (int y = y0; y < y1; ++y) {
-          for (int x = x0; x < x1; ++x) {
-            for (int s = s0; s < s1; ++s, ++n) {
-              paths.pixel[n] = std::uint32_t(y) * std::uint32_t(job.film.width) + std::uint32_t(x);
-              paths.sample[n] = job.first_sample + std::uint32_t(s);
-              paths.column[n] = float(x);
-              paths.row[n] = float(y);
-            }
-          }
-        }
-      }
-    }
-  }
-  paths.count = n;
-  // Lanes behind the last path repeat it, so that what they index stays valid.
-  for (int i = n; i < n + 16; ++i) {
-    paths.pixel[i] = paths.pixel[n - 1];
-    paths.sample[i] = paths.sample[n - 1];
-  }
-  std::fill_n(paths.radiance.x, n, 0.0f);
-  std::fill_n(paths.radiance.y, n, 0.0f);
-  std::fill_n(paths.radiance.z, n, 0.0f);
-}
-
-template <int W>
-void generate_camera_rays(const TileJob& job, Wave& wave) {
-  using V = Float<W>;
-  const PathTable& paths = wave.paths;
-  RayQueue& rays = wave.rays[0];
-  rays.count = paths.count;
-  for (int i = 0; i < paths.count; i += W) store(rays.path + i, Int<W>(i) + lane_indices<W>());
-  const SampleBatch batch{rays.path,    paths.count,      paths.pixel,
-                          paths.sample, job.first_sample, int(job.samples)};
-  float* u = wave.list.u[0];
-  float* v = wave.list.v[0];
-  fill_pair<W>(*job.sampler, batch, pixel_pair, u, v);
-  for (int i = 0; i < paths.count; i += W) {
-    const Vec3<V> direction =
-        camera_direction(job.scene->camera, load<V>(paths.column + i), load<V>(paths.row + i),
-                         Vec2<V>(load<V>(u + i), load<V>(v + i)));
-    store3(rays.origin, i, splat<V>(job.scene->camera.origin));
-    store3(rays.direction, i, direction);
-    store3(rays.throughput, i, Vec3<V>(V(1.0f)));
-  }
-}
-
 // Radiance that rays of the queue find at their ends: emitting surfaces and the environment.
-template <int W>
+template <int W, FeatureMask F>
 void add_emission(const ShadeContext& c) {
   using V = Float<W>;
   using I = Int<W>;
@@ -90,116 +32,177 @@ void add_emission(const ShadeContext& c) {
     const Mask<W> active = lanes_below<W>(i, rays.count);
     const I geometry = load<I>(hits.geometry + i);
     const Mask<W> miss = active & (geometry < I(0));
-    if (scene.environment >= 0 && any(miss)) {
+    if (needs<F>(scene, Feature::Environment) && any(miss)) {
       const LightRow<V> light = load_light(scene.lights, I(scene.environment));
       add(i, light.radiance, load<V>(rays.environment_pdf + i) * light.probability, miss);
     }
-    if (!scene.area_lights) continue;
+    if (!has_area_lights<F>(scene)) continue;
     const Mask<W> hit = active & !(geometry < I(0));
-    const I first = gather(scene.geometry.first_light, select(hit, geometry, I(0)));
+    const I first = gather(scene.geometry.rows + 2, select(hit, geometry, I(0)) * I(geometry_stride));
     const Mask<W> emitting = hit & !(first < I(0));
     if (none(emitting)) continue;
     const I entry = select(emitting, first + load<I>(hits.primitive + i), I(0));
     const Emitted<V> e =
-        hit_light(scene, gather(scene.light_of_primitive, entry), load3<V>(rays.origin, i),
-                  load3<V>(rays.direction, i), load<V>(hits.distance + i));
+        hit_light<V, F>(scene, gather(scene.light_of_primitive, entry), load3<V>(rays.origin, i),
+                        load3<V>(rays.direction, i), load<V>(hits.distance + i));
     // NaN is added too, to be counted.
     add(i, e.radiance, e.pdf, emitting & !(max_component(e.radiance) <= V(0.0f)));
   }
 }
 
-// Lists the hits on materials of one kind, in the order of their rays.
-template <int W>
-void list_hits(const ShadeContext& c, MaterialKind kind) {
+// Copies the hits on materials of kind K side by side, in the order of their rays.
+template <int W, MaterialKind K, FeatureMask F>
+void queue_hits(const ShadeContext& c) {
+  using V = Float<W>;
   using I = Int<W>;
-  ShadeList& list = c.wave->list;
-  list.count = 0;
-  for (int i = 0; i < c.rays().count; i += W) {
-    const I geometry = load<I>(c.wave->hits.geometry + i);
-    const Mask<W> hit = lanes_below<W>(i, c.rays().count) & !(geometry < I(0));
-    const I material = gather(c.scene->geometry.material, select(hit, geometry, I(0)));
-    const Mask<W> listed = hit & (gather(c.scene->materials.kinds, material) == I(int(kind)));
-    list.count += compress_store(list.ray + list.count, I(i) + lane_indices<W>(), listed);
-  }
-  for (int i = list.count; list.count > 0 && i < list.count + 16; ++i) {
-    list.ray[i] = list.ray[list.count - 1];
-  }
-}
-
-template <int W, MaterialKind K>
-LOCKSTEP_INLINE void shade_kind(const ShadeContext& c) {
-  if (!c.scene->has_material[int(K)]) return;
-  list_hits<W>(c, K);
-  if (c.wave->list.count > 0) shade<W, K>(c);
-}
-
-// Adds the wave's paths to the film, a pixel's samples in ascending order.
-inline void deposit(const TileJob& job, const PathTable& paths, TileCounts& counts) {
-  for (int i = 0; i < paths.count; ++i) {
-    const float r = paths.radiance.x[i], g = paths.radiance.y[i], b = paths.radiance.z[i];
-    const std::size_t pixel = paths.pixel[i];
-    if (!(is_finite(r) && is_finite(g) && is_finite(b))) {
-      if (counts.nonfinite < TileCounts::kept) {
-        const auto width = std::size_t(job.film.width);
-        counts.bad[counts.nonfinite] = {int(pixel % width), int(pixel / width), paths.sample[i]};
-      }
-      ++counts.nonfinite;
-      continue;
+  const SceneData& scene = *c.scene;
+  const RayQueue& rays = c.rays();
+  const HitArray& hits = c.wave->hits;
+  ShadeQueue& out = c.wave->hits_to_shade;
+  const bool other_kinds = (scene.features & F & material_features & ~bit(material_feature(K))) != 0;
+  int n = 0;
+  for (int i = 0; i < rays.count; i += W) {
+    const I geometry = load<I>(hits.geometry + i);
+    Mask<W> taken = lanes_below<W>(i, rays.count) & !(geometry < I(0));
+    if (other_kinds) {
+      const I row = select(taken, geometry, I(0)) * I(geometry_stride);
+      const I kind = as_int(as_uint(gather(scene.geometry.rows + 3, row)) >> geometry_kind_shift);
+      taken = taken & (kind == I(int(K)));
     }
-    double* sum = job.film.sum + pixel * 3;
-    sum[0] += double(r), sum[1] += double(g), sum[2] += double(b);
-    ++job.film.count[pixel];
+    const Packing<W> lanes(taken);
+    pack3(lanes, out.direction, n, load3<V>(rays.direction, i));
+    pack3(lanes, out.throughput, n, load3<V>(rays.throughput, i));
+    lanes.store(out.barycentric_u + n, load<V>(hits.u + i));
+    lanes.store(out.barycentric_v + n, load<V>(hits.v + i));
+    lanes.store(out.geometry + n, geometry);
+    lanes.store(out.primitive + n, load<I>(hits.primitive + i));
+    lanes.store(out.path + n, load<I>(rays.path + i));
+    if (needs<F>(scene, Feature::Spheres)) {
+      pack3(lanes, out.origin, n, load3<V>(rays.origin, i));
+      lanes.store(out.distance + n, load<V>(hits.distance + i));
+    }
+    n += lanes.count();
+  }
+  out.count = n;
+  if (n == 0) return;
+  // Lanes behind the last hit repeat what is used as an index.
+  for (int i = n; i < n + W; ++i) {
+    out.geometry[i] = out.geometry[n - 1];
+    out.primitive[i] = out.primitive[n - 1];
+    out.path[i] = out.path[n - 1];
   }
 }
 
-// One wave: at most wave_paths paths, from camera to film. Camera rays are coherent; bounce rays
-// are traced as incoherent even where all lanes share their random numbers: the coherent flag gains
-// a third in a box of flat walls and loses as much on fine geometry, whose normals scatter them.
+template <int W, MaterialKind K, FeatureMask F>
+LOCKSTEP_INLINE void shade_kind(const ShadeContext& c) {
+  if (!needs<F>(*c.scene, material_feature(K))) return;
+  queue_hits<W, K, F>(c);
+  if (c.wave->hits_to_shade.count > 0) shade<W, K, F>(c);
+}
+
+// Adds the radiance of every shadow ray that reached its light.
 template <int W>
+void add_direct_light(const ShadowQueue& shadows, PathTable& paths) {
+  using V = Float<W>;
+  for (int i = 0; i < shadows.count; i += W) {
+    const Mask<W> lit =
+        lanes_below<W>(i, shadows.count) & (load<V>(shadows.distance + i) >= V(0.0f));
+    add_radiance(paths, load<Int<W>>(shadows.path + i), load3<V>(shadows.radiance, i), lit);
+  }
+}
+
+inline void log_closest(RayLog& log, RayKind kind, int bounce, const RayQueue& q) {
+  log.append(kind, bounce, q.count,
+             {{q.origin.x, q.origin.y, q.origin.z},
+              {q.direction.x, q.direction.y, q.direction.z},
+              nullptr});
+}
+inline void log_shadows(RayLog& log, int bounce, const ShadowQueue& q) {
+  log.append(RayKind::Shadow, bounce, q.count,
+             {{q.origin.x, q.origin.y, q.origin.z},
+              {q.direction.x, q.direction.y, q.direction.z},
+              q.distance});
+}
+
+// One wave: at most wave_paths paths, from camera to film.
+template <int W, FeatureMask F>
 void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
-  list_paths(job, wave.paths);
-  generate_camera_rays<W>(job, wave);
-  ShadeContext c{job.scene, &job, &wave, 0, false};
+  const SceneData& scene = *job.scene;
+  StageClock clock(counts.ticks, Stage::Shading);
+  begin_paths<W>(job, wave);
+  generate_camera_rays<W, F>(job, wave, clock);
+  ShadeContext c{&scene, &job, &wave, &clock, 0, false};
   for (c.bounce = 0; c.rays().count > 0; ++c.bounce) {
-    const bool camera = c.bounce == 0;
-    intersect<W>(*job.scene, camera, c.rays(), wave.hits, counts);
-    (camera ? counts.rays.camera : counts.rays.bounce) += std::uint64_t(c.rays().count);
-    if (job.scene->lights.count > 0) add_emission<W>(c);
+    const RayKind kind = c.bounce == 0 ? RayKind::Camera : RayKind::Bounce;
+    if (job.log) log_closest(*job.log, kind, c.bounce, c.rays());
+    clock.enter(Stage::Traversal);
+    trace_closest(scene, *job.traversal_policy, kind, c.bounce, c.rays(), wave.hits, counts);
+    clock.enter(Stage::Shading);
+    if (scene.lights.count > 0) add_emission<W, F>(c);
     if (c.bounce >= job.path.depth) break;
     c.last = c.bounce + 1 >= job.path.depth;
     c.next_rays().count = 0;
     wave.shadows.count = 0;
-    shade_kind<W, MaterialKind::Diffuse>(c);
-    shade_kind<W, MaterialKind::Conductor>(c);
-    shade_kind<W, MaterialKind::Coated>(c);
-    trace_shadows<W>(*job.scene, camera && job.path.coherent_shadows, wave.shadows, wave.paths,
-                     counts);
+    shade_kind<W, MaterialKind::Diffuse, F>(c);
+    shade_kind<W, MaterialKind::Conductor, F>(c);
+    shade_kind<W, MaterialKind::Coated, F>(c);
+    if (job.log) log_shadows(*job.log, c.bounce, wave.shadows);
+    clock.enter(Stage::Traversal);
+    trace_occluded(scene, *job.traversal_policy, c.bounce, wave.shadows, counts);
+    clock.enter(Stage::Shading);
+    add_direct_light<W>(wave.shadows, wave.paths);
   }
-  deposit(job, wave.paths, counts);
+  clock.enter(Stage::Film);
+  end_paths(job, wave.paths, counts);
 }
 
-// Splits a tile's job into waves. With many samples per block of lanes a wave covers fewer pixels.
-template <int W>
-void trace_tile(const TileJob& tile, void* scratch, TileCounts& counts) {
-  const unsigned saved_mode = _mm_getcsr();
-  _mm_setcsr(saved_mode | 0x8040);  // flush denormals to zero, in results and operands
-  Wave& wave = *static_cast<Wave*>(scratch);
+// Samples of a tile in waves. With many samples per block of lanes a wave covers fewer pixels.
+template <int W, FeatureMask F>
+void trace_samples(const TileJob& part, Wave& wave, TileCounts& counts) {
   constexpr int tile_pixels = tile_size * tile_size;
-  const int wave_samples = std::max(tile.path.lanes.samples, wave_paths / tile_pixels);
+  const int wave_samples = std::max(part.lanes.samples, wave_paths / tile_pixels);
   int side = tile_size;
   while (side * side * wave_samples > wave_paths) side /= 2;
-  for (std::uint32_t s = 0; s < tile.samples; s += std::uint32_t(wave_samples)) {
-    for (int y = tile.y0; y < tile.y1; y += side) {
-      for (int x = tile.x0; x < tile.x1; x += side) {
-        TileJob job = tile;
-        job.x0 = x, job.x1 = std::min(x + side, tile.x1);
-        job.y0 = y, job.y1 = std::min(y + side, tile.y1);
-        job.first_sample = tile.first_sample + s;
-        job.samples = std::min(tile.samples - s, std::uint32_t(wave_samples));
-        trace_wave<W>(job, wave, counts);
+  for (std::uint32_t s = 0; s < part.samples; s += std::uint32_t(wave_samples)) {
+    for (int y = part.y0; y < part.y1; y += side) {
+      for (int x = part.x0; x < part.x1; x += side) {
+        TileJob job = part;
+        job.x0 = x, job.x1 = std::min(x + side, part.x1);
+        job.y0 = y, job.y1 = std::min(y + side, part.y1);
+        job.first_sample = part.first_sample + s;
+        job.samples = std::min(part.samples - s, std::uint32_t(wave_samples));
+        trace_wave<W, F>(job, wave, counts);
       }
     }
   }
+  count_layout(counts, {part.lanes, std::uint64_t(part.x1 - part.x0) *
+                                        std::uint64_t(part.y1 - part.y0) * part.samples});
+}
+
+template <int W, FeatureMask F>
+void trace_in_layouts(TileJob tile, Wave& wave, TileCounts& counts) {
+  const LayoutPlan plan = tile.layout_policy->plan(tile.samples);
+  tile.lanes = plan.lanes;
+  if (!plan.trial) return trace_samples<W, F>(tile, wave, counts);
+  const std::uint32_t all = tile.samples, half = all / 2;
+  double ticks_per_sample[2];  // in the plan's layout, in the trial's
+  for (const bool second : {false, true}) {
+    const bool trial = second != plan.trial_first;
+    tile.lanes = trial ? *plan.trial : plan.lanes;
+    tile.samples = second ? all - half : half;
+    const std::uint64_t start = read_ticks();
+    trace_samples<W, F>(tile, wave, counts);
+    ticks_per_sample[trial] = double(read_ticks() - start) / tile.samples;
+    tile.first_sample += tile.samples;
+  }
+  tile.layout_policy->record(ticks_per_sample[1] / ticks_per_sample[0]);
+}
+
+template <int W, FeatureMask F>
+void trace_tile(const TileJob& tile, void* scratch, TileCounts& counts) {
+  const unsigned saved_mode = _mm_getcsr();
+  _mm_setcsr(saved_mode | 0x8040);  // flush denormals to zero, in results and operands
+  trace_in_layouts<W, F>(tile, *static_cast<Wave*>(scratch), counts);
   _mm_setcsr(saved_mode);
 }
 

@@ -12,8 +12,8 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <cstring>
 #include <thread>
 
 namespace lockstep {
@@ -53,16 +53,18 @@ SamplerState image_state(const SamplerSpec& sampler, const RenderSettings& setti
   return state;
 }
 
-// A block of pixels, one sample each: best where pixels share a sequence. Where they do not, samples
-// of one pixel in a packet (1x1x16) were from 3% faster to 15% slower, by scene and depth.
-LaneLayout choose_lanes(const RenderSettings& settings) {
-  return settings.lanes_auto ? LaneLayout{} : settings.lanes;
+RayCounts ray_counts(const TileCounts& counts) {
+  std::uint64_t of[ray_kinds] = {};
+  for (int kind = 0; kind < ray_kinds; ++kind) {
+    for (const std::uint64_t n : counts.traced[kind]) of[kind] += n;
+  }
+  return {of[int(RayKind::Camera)], of[int(RayKind::Bounce)], of[int(RayKind::Shadow)]};
 }
 
-// The flag pays on the first interaction's shadow rays while lanes aim at nearly the same point of
-// a light; with larger weights, or further along the paths, it costs up to a quarter of the speed.
-bool coherent_shadows(const SamplerState& state, double weight) {
-  return state.shared && weight <= 1.0 / 16.0;
+LaneLayout layout_of_most_paths(const TileCounts& counts) {
+  const auto* most = std::max_element(std::begin(counts.layouts), std::end(counts.layouts),
+                                      [](const auto& a, const auto& b) { return a.paths < b.paths; });
+  return most->lanes;
 }
 
 class Renderer {
@@ -74,11 +76,16 @@ class Renderer {
         settings_(settings),
         progress_(progress),
         start_(wall_seconds()),
-        counted_(start_) {
+        counted_(start_),
+        workers_(TraversalPolicy(settings.traversal, default_width(settings.isa)),
+                 LayoutPolicy(settings.lanes)) {
     const FilmDescription& film = scene.description().film;
-    pass_.kernel = &find_kernel(settings.isa, settings.width);
+    pass_.kernel = &find_kernel(settings.isa, settings.width,
+                                settings.specialized ? scene.features() : all_features);
+    pass_.workers = &workers_;
+    pass_.log = settings.log;
     pass_.scene = &scene.data();
-    pass_.path = {settings.depth, settings.roulette_depth, choose_lanes(settings)};
+    pass_.path = {settings.depth, settings.roulette_depth};
     pass_.threads = settings.threads > 0 ? settings.threads
                                          : int(std::max(1u, std::thread::hardware_concurrency()));
     pilot_spp_ = pilot_samples(sampler, settings);
@@ -99,11 +106,11 @@ class Renderer {
       const double before = thread_cpu_seconds();
       result.weights = make_weights(mean(state_.pilot), {sampler_.c, sampler_.t, sampler_.filter});
       weight = mean_weight(*result.weights);
-      state_.totals.cpu_seconds += thread_cpu_seconds() - before;
+      weights_seconds_ = thread_cpu_seconds() - before;
+      state_.totals.cpu_seconds += weights_seconds_;
       state.weights = result.weights->pixels.data();
     }
     pass_.sampler = &state;
-    pass_.path.coherent_shadows = coherent_shadows(state, weight);
     if (settings_.time_seconds > 0.0) {
       render_for_time();
     } else {
@@ -190,13 +197,24 @@ class Renderer {
     return pilot_spp_ > 0 ? mean(state_.pilot, state_.image) : mean(state_.image);
   }
 
+  // Ticks run on while a thread waits for its turn; CPU time is shared out in their proportion.
+  double stage_seconds(int stage) const {
+    std::uint64_t all = 0;
+    for (const std::uint64_t ticks : state_.totals.counts.ticks.of) all += ticks;
+    const double share = all > 0 ? double(state_.totals.counts.ticks.of[stage]) / double(all) : 0.0;
+    return share * (state_.totals.cpu_seconds - weights_seconds_);
+  }
+
   RenderStats stats(double weight) const {
     const TileCounts& counts = state_.totals.counts;
     RenderStats s;
     s.wall_seconds = state_.wall_seconds + wall_seconds() - counted_;
     s.cpu_seconds = state_.totals.cpu_seconds;
-    s.paths = counts.rays.camera;
-    s.rays = counts.rays;
+    s.rays = ray_counts(counts);
+    s.paths = s.rays.camera;
+    for (int stage = 0; stage < stages; ++stage) s.stage_seconds[stage] = stage_seconds(stage);
+    std::memcpy(s.traced, counts.traced, sizeof s.traced);
+    s.packets = counts.packets;
     s.width = pass_.kernel->width;
     if (counts.lanes > 0) s.lanes_active = double(counts.active_lanes) / double(counts.lanes);
     s.nonfinite = counts.nonfinite;
@@ -205,7 +223,7 @@ class Renderer {
     s.spp = int(samples_done());
     s.pilot_spp = pilot_spp_;
     s.mean_weight = weight;
-    s.lanes = pass_.path.lanes;
+    s.lanes = layout_of_most_paths(counts);
     s.threads = pass_.threads;
     return s;
   }
@@ -216,39 +234,14 @@ class Renderer {
   const Progress& progress_;
   double start_;    // of this run, wall clock
   double counted_;  // up to when state_.wall_seconds counts
+  double weights_seconds_ = 0.0;
   RenderState state_;
+  Workers workers_;
   Pass pass_;
   int pilot_spp_ = 0;
 };
 
-int parse_extent(std::string_view text, std::string_view part) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-  if (error != std::errc() || end != part.data() + part.size() || value < 1 || value > 256 ||
-      (value & (value - 1)) != 0) {
-    throw UsageError(fmt::format(
-        "lane layout '{}' needs the form XxYxS in powers of two, such as 4x4x1 or 1x1x16", text));
-  }
-  return value;
-}
-
 }  // namespace
-
-LaneLayout parse_lane_layout(std::string_view text) {
-  if (text == "auto") return {};
-  const std::size_t first = text.find('x');
-  const std::size_t second = first == std::string_view::npos ? first : text.find('x', first + 1);
-  if (second == std::string_view::npos) parse_extent(text, "");
-  const LaneLayout lanes{parse_extent(text, text.substr(0, first)),
-                         parse_extent(text, text.substr(first + 1, second - first - 1)),
-                         parse_extent(text, text.substr(second + 1))};
-  if (lanes.x > tile_size || lanes.y > tile_size || lanes.x * lanes.y * lanes.samples > 256) {
-    throw UsageError(
-        fmt::format("lane layout '{}' is too large: at most {}x{} pixels and 256 lanes", text,
-                    tile_size, tile_size));
-  }
-  return lanes;
-}
 
 RenderResult render(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
                     const Progress& progress) {

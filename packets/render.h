@@ -5,6 +5,9 @@
 #include "core/image.h"
 #include "core/scene.h"
 #include "packets/isa.h"
+#include "packets/lane_layout.h"
+#include "packets/stage_clock.h"
+#include "packets/traversal_mode.h"
 #include "samplers/sampler_spec.h"
 
 #include <cstdint>
@@ -17,15 +20,7 @@
 
 namespace lockstep {
 
-// How a packet's lanes map to pixels and samples: x * y pixels, `samples` of each.
-struct LaneLayout {
-  int x = 4;
-  int y = 4;
-  int samples = 1;
-};
-
-// "auto" or "XxYxS", powers of two whose product is at most 256. Throws UsageError.
-LaneLayout parse_lane_layout(std::string_view text);
+struct RayLog;
 
 struct RenderSettings {
   std::uint32_t seed = 0;
@@ -35,9 +30,12 @@ struct RenderSettings {
   int roulette_depth = 5;     // Russian roulette from this many interactions on
   int threads = 0;            // 0: all cores
   int width = 0;              // SIMD lanes: 1, 4, 8, 16; 0: the instruction set's default
-  LaneLayout lanes;
-  bool lanes_auto = true;     // 4x4x1, near the best layout wherever measured
+  // Measured and chosen while rendering where not given.
+  std::optional<LaneLayout> lanes;
+  std::optional<TraversalMode> traversal;
+  bool specialized = true;  // kernels without the code that the scene does not need
   Isa isa = choose_isa();
+  RayLog* log = nullptr;  // if set, gets all rays; with one thread only
   // If not empty: the film is kept in this file as the render goes on, and a render that finds it
   // there continues it. Throws Error where it was made with other settings.
   std::string resume_file;
@@ -62,6 +60,9 @@ struct RenderStats {
   double cpu_seconds = 0.0;  // thread CPU time, summed over the threads that worked
   std::uint64_t paths = 0;
   RayCounts rays;
+  std::uint64_t traced[ray_kinds][traversal_modes] = {};  // rays, by RayKind and index(mode)
+  std::uint64_t packets = 0;
+  double stage_seconds[stages] = {};  // CPU time by Stage
   double lanes_active = 1.0;  // share of packet lanes that carried a ray, over all packets traced
   std::uint64_t nonfinite = 0;
   std::vector<BadSample> bad_samples;  // the first few of them
@@ -69,7 +70,7 @@ struct RenderStats {
   int pilot_spp = 0;                   // of which for the pilot
   double mean_weight = 0.0;            // of the perturbation; 1 for independent pixels
   int width = 0;
-  LaneLayout lanes;
+  LaneLayout lanes;  // of most paths
   int threads = 0;
 };
 

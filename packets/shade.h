@@ -8,6 +8,7 @@
 
 #include "core/bsdf.h"
 #include "core/light.h"
+#include "packets/stage_clock.h"
 #include "packets/surface.h"
 #include "samplers/dimensions.h"
 #include "samplers/sampler.h"
@@ -33,6 +34,7 @@ struct ShadeContext {
   const SceneData* scene;
   const TileJob* job;
   Wave* wave;
+  StageClock* clock;
   int bounce;  // of this interaction, from 0
   bool last;   // no further interaction is lit
 
@@ -46,41 +48,43 @@ LOCKSTEP_INLINE bool continues(const ShadeContext& c) {
   return !(c.last && K == MaterialKind::Diffuse);
 }
 
-// Draws the values that this interaction needs, and no others, for all paths in the list.
-template <int W, MaterialKind K>
+// Draws the values that this interaction needs, and no others, for all paths in the queue.
+template <int W, MaterialKind K, FeatureMask F>
 void draw_samples(const ShadeContext& c) {
-  ShadeList& list = c.wave->list;
+  ShadeQueue& queue = c.wave->hits_to_shade;
   const PathTable& paths = c.wave->paths;
-  for (int i = 0; i < list.count; i += W) {
-    store(list.path + i, gather(c.rays().path, load<Int<W>>(list.ray + i)));
+  for (int i = 0; i < queue.count; i += W) {
+    const Int<W> path = load<Int<W>>(queue.path + i);
+    store(queue.pixel + i, gather(paths.pixel, path));
+    store(queue.sample + i, gather(paths.sample, path));
   }
-  const SampleBatch batch{list.path,    list.count,          paths.pixel,
-                          paths.sample, c.job->first_sample, int(c.job->samples)};
+  const SampleBatch batch{queue.pixel, queue.sample, queue.count, c.job->first_sample,
+                          int(c.job->samples)};
   const auto draw = [&](Purpose purpose) {
-    fill_pair<W>(*c.job->sampler, batch, sample_pair(c.bounce, purpose), list.u[int(purpose)],
-                 list.v[int(purpose)]);
+    fill_pair<W>(*c.job->sampler, batch, sample_pair(c.bounce, purpose), queue.u[int(purpose)],
+                 queue.v[int(purpose)]);
   };
   if (c.scene->lights.count > 0) draw(Purpose::Light);
-  if (c.scene->lights.count > 1 || K == MaterialKind::Coated) draw(Purpose::Choice);
+  if (needs<F>(*c.scene, Feature::LightChoice) || K == MaterialKind::Coated) draw(Purpose::Choice);
   if (continues<K>(c)) draw(Purpose::Bsdf);
   if (continues<K>(c) && c.bounce + 1 >= c.job->path.roulette_depth) draw(Purpose::Roulette);
 }
 
 // Light sampling: a shadow ray for every lane that may receive something.
-template <class Bsdf, class V>
+template <FeatureMask F, class Bsdf, class V>
 LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>& surface,
                                          const Bsdf& bsdf, const Vec3<V>& throughput, int i,
-                                         IntOf<V> path, MaskOf<V> active, bool alone) {
+                                         MaskOf<V> active, bool alone) {
   using I = IntOf<V>;
-  const ShadeList& list = c.wave->list;
+  const ShadeQueue& queue = c.wave->hits_to_shade;
   const auto value = [&](const FloatArray* a, Purpose p)
                          LOCKSTEP_LAMBDA { return load<V>(a[int(p)] + i); };
-  const I light = c.scene->lights.count > 1
-                      ? choose_light(c.scene->lights, value(list.u, Purpose::Choice))
+  const I light = needs<F>(*c.scene, Feature::LightChoice)
+                      ? choose_light(c.scene->lights, value(queue.u, Purpose::Choice))
                       : I(0);
-  const LightSample<V> s =
-      sample_light(*c.scene, light, surface.origin, surface.frame,
-                   Vec2<V>(value(list.u, Purpose::Light), value(list.v, Purpose::Light)));
+  const LightSample<V> s = sample_light<V, F>(
+      *c.scene, light, surface.origin, surface.frame,
+      Vec2<V>(value(queue.u, Purpose::Light), value(queue.v, Purpose::Light)));
   const Vec3<V> wi = surface.frame.to_local(s.wi);
   MaskOf<V> lit = active & (s.pdf > V(0.0f)) & (wi.z > V(0.0f)) &
                   (dot(surface.geometric_normal, s.wi) > V(0.0f));
@@ -91,22 +95,24 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
   lit = lit & !(max_component(radiance) <= V(0.0f));  // NaN goes on, to be counted
 
   ShadowQueue& out = c.wave->shadows;
-  compress3(out.origin, out.count, surface.origin, lit);
-  compress3(out.direction, out.count, s.wi, lit);
-  compress_store(out.distance + out.count, s.distance * V(1.0f - 0x1p-12f), lit);
-  compress3(out.radiance, out.count, radiance, lit);
-  out.count += compress_store(out.path + out.count, path, lit);
+  const Packing<width_of<V>> lanes(lit);
+  pack3(lanes, out.origin, out.count, surface.origin);
+  pack3(lanes, out.direction, out.count, s.wi);
+  lanes.store(out.distance + out.count, s.distance * V(1.0f - 0x1p-12f));
+  pack3(lanes, out.radiance, out.count, radiance);
+  lanes.store(out.path + out.count, load<I>(queue.path + i));
+  out.count += lanes.count();
 }
 
 // BSDF sampling: the next ray of every path that survives.
-template <class Bsdf, class V>
+template <FeatureMask F, class Bsdf, class V>
 LOCKSTEP_INLINE void continue_paths(const ShadeContext& c, const Surface<V>& surface,
-                                    const Bsdf& bsdf, Vec3<V> throughput, int i, IntOf<V> path,
-                                    MaskOf<V> active, V lobe) {
-  const ShadeList& list = c.wave->list;
+                                    const Bsdf& bsdf, Vec3<V> throughput, int i, MaskOf<V> active,
+                                    V lobe) {
+  const ShadeQueue& queue = c.wave->hits_to_shade;
   const BsdfSample<V> s = sample(
       bsdf, surface.wo, lobe,
-      Vec2<V>(load<V>(list.u[int(Purpose::Bsdf)] + i), load<V>(list.v[int(Purpose::Bsdf)] + i)));
+      Vec2<V>(load<V>(queue.u[int(Purpose::Bsdf)] + i), load<V>(queue.v[int(Purpose::Bsdf)] + i)));
   const Vec3<V> direction = surface.frame.to_world(s.wi);
   throughput = throughput * s.weight;
   MaskOf<V> alive = active & (s.pdf > V(0.0f)) & (s.wi.z > V(0.0f)) &
@@ -114,43 +120,48 @@ LOCKSTEP_INLINE void continue_paths(const ShadeContext& c, const Surface<V>& sur
                     !(max_component(throughput) <= V(0.0f));
   if (c.bounce + 1 >= c.job->path.roulette_depth) {
     const V survival = min(max_component(throughput), V(1.0f));
-    alive = alive & !(load<V>(list.u[int(Purpose::Roulette)] + i) >= survival);
+    alive = alive & !(load<V>(queue.u[int(Purpose::Roulette)] + i) >= survival);
     throughput = throughput * (V(1.0f) / survival);
   }
   if (none(alive)) return;
 
   RayQueue& out = c.next_rays();
-  compress3(out.origin, out.count, surface.origin, alive);
-  compress3(out.direction, out.count, direction, alive);
-  compress3(out.throughput, out.count, throughput, alive);
-  compress_store(out.bsdf_pdf + out.count, s.pdf, alive);
-  compress_store(out.environment_pdf + out.count, cosine_hemisphere_pdf(s.wi.z), alive);
-  out.count += compress_store(out.path + out.count, path, alive);
+  const Packing<width_of<V>> lanes(alive);
+  pack3(lanes, out.origin, out.count, surface.origin);
+  pack3(lanes, out.direction, out.count, direction);
+  pack3(lanes, out.throughput, out.count, throughput);
+  lanes.store(out.bsdf_pdf + out.count, s.pdf);
+  if (needs<F>(*c.scene, Feature::Environment)) {
+    lanes.store(out.environment_pdf + out.count, cosine_hemisphere_pdf(s.wi.z));
+  }
+  lanes.store(out.path + out.count, load<IntOf<V>>(queue.path + i));
+  out.count += lanes.count();
 }
 
-// Shades the hits in the wave's list, all on materials of kind K.
-template <int W, MaterialKind K>
+// Shades the queued hits, all on materials of kind K.
+template <int W, MaterialKind K, FeatureMask F>
 void shade(const ShadeContext& c) {
   using V = Float<W>;
   using I = Int<W>;
-  draw_samples<W, K>(c);
-  const ShadeList& list = c.wave->list;
+  c.clock->enter(Stage::Sampling);
+  draw_samples<W, K, F>(c);
+  c.clock->enter(Stage::Shading);
+  const ShadeQueue& queue = c.wave->hits_to_shade;
   const bool go_on = continues<K>(c);
-  for (int i = 0; i < list.count; i += W) {
-    const Mask<W> active = lanes_below<W>(i, list.count);
-    const I ray = load<I>(list.ray + i), path = load<I>(list.path + i);
-    const I geometry = gather(c.wave->hits.geometry, ray);
-    const Surface<V> surface = load_surface(*c.scene, c.rays(), c.wave->hits, ray, geometry);
-    const auto bsdf =
-        load_bsdf<K>(c.scene->materials, gather(c.scene->geometry.material, geometry));
-    const Vec3<V> throughput = gather3(c.rays().throughput, ray);
+  for (int i = 0; i < queue.count; i += W) {
+    const Mask<W> active = lanes_below<W>(i, queue.count);
+    const Rows<I> geometry =
+        gather_rows(c.scene->geometry.rows, load<I>(queue.geometry + i) * I(geometry_stride));
+    const Surface<V> surface = load_surface<W, F>(*c.scene, queue, i, geometry);
+    const auto bsdf = load_bsdf<K>(c.scene->materials, geometry.y);
+    const Vec3<V> throughput = load3<V>(queue.throughput, i);
     if (c.scene->lights.count > 0) {
-      sample_direct_light(c, surface, bsdf, throughput, i, path, active, !go_on);
+      sample_direct_light<F>(c, surface, bsdf, throughput, i, active, !go_on);
     }
     if (go_on) {
       const V lobe =
-          K == MaterialKind::Coated ? load<V>(list.v[int(Purpose::Choice)] + i) : V(0.0f);
-      continue_paths(c, surface, bsdf, throughput, i, path, active, lobe);
+          K == MaterialKind::Coated ? load<V>(queue.v[int(Purpose::Choice)] + i) : V(0.0f);
+      continue_paths<F>(c, surface, bsdf, throughput, i, active, lobe);
     }
   }
 }

@@ -55,38 +55,38 @@ LOCKSTEP_INLINE V largest_coordinate(const Corners<V>& p) {
 
 // Spheres: the hit is put back onto the sphere, whose normal there is exact.
 template <class I>
-LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, I geometry,
+LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, MaskOf<I> sphere, I geometry,
                                    const Vec3<FloatOf<I>>& on_ray, HitPoint<FloatOf<I>>& hit,
                                    Vec3<FloatOf<I>>& normal) {
   using V = FloatOf<I>;
-  const auto sphere = gather(scene.geometry.is_sphere, geometry) == I(1);
   if (none(sphere)) return;
-  const Vec3<V> centre = gather_vec3(scene.geometry.spheres, geometry, 4);
-  const V radius = gather(scene.geometry.spheres + 3, geometry * I(4));
+  const auto row = gather_rows(scene.geometry.spheres, geometry * I(4));
+  const Vec3<V> centre(row.x, row.y, row.z);
+  const V radius = row.w;
   const Vec3<V> n = normalize_any<V>(on_ray - centre);
   hit.position = select<V>(sphere, fma(radius, n, centre), hit.position);
   hit.magnitude = select(sphere, max_component(abs(centre)) + radius, hit.magnitude);
   normal = select<V>(sphere, n, normal);
 }
 
-// The surface that the rays of the queue with these indices hit. Lanes that hit nothing must not
-// be asked for.
-template <class I>
-LOCKSTEP_INLINE Surface<FloatOf<I>> load_surface(const SceneData& scene, const RayQueue& rays,
-                                                 const HitArray& hits, I ray, I geometry) {
-  using V = FloatOf<I>;
-  const Vec3<V> direction = gather3(rays.direction, ray);
-  const I triangle =
-      (gather(scene.geometry.first_triangle, geometry) + gather(hits.primitive, ray)) * I(3);
-  const Vec3<I> vertices(gather(scene.triangles, triangle), gather(scene.triangles + 1, triangle),
-                         gather(scene.triangles + 2, triangle));
-  const V u = gather(hits.u, ray), v = gather(hits.v, ray);
+// The surface at entries i... of the queue, whose geometries have these rows.
+template <int W, FeatureMask F>
+LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const ShadeQueue& queue,
+                                               int i, const Rows<Int<W>>& geometry) {
+  using V = Float<W>;
+  using I = Int<W>;
+  const Vec3<V> direction = load3<V>(queue.direction, i);
+  const Vec3<I> vertices =
+      gather_vec3(scene.triangles, geometry.x + load<I>(queue.primitive + i), 3);
+  const V u = load<V>(queue.barycentric_u + i), v = load<V>(queue.barycentric_v + i);
   const Corners<V> corners = load_corners(scene.positions, vertices);
   HitPoint<V> hit{corners.at(u, v), largest_coordinate(corners)};
-  Vec3<V> normal = gather3(hits.normal, ray);
-  if (scene.spheres) {
-    const Vec3<V> on_ray = fma(gather(hits.distance, ray), direction, gather3(rays.origin, ray));
-    refine_sphere(scene, geometry, on_ray, hit, normal);
+  Vec3<V> normal = cross<V>(corners.b - corners.a, corners.c - corners.a);
+  if (needs<F>(scene, Feature::Spheres)) {
+    const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
+    const Vec3<V> on_ray =
+        fma(load<V>(queue.distance + i), direction, load3<V>(queue.origin, i));
+    refine_sphere(scene, sphere, load<I>(queue.geometry + i), on_ray, hit, normal);
   }
 
   Surface<V> s;
@@ -96,12 +96,12 @@ LOCKSTEP_INLINE Surface<FloatOf<I>> load_surface(const SceneData& scene, const R
   s.origin = fma(V(offset_scale) * hit.magnitude, s.geometric_normal, hit.position);
 
   Vec3<V> shading = s.geometric_normal;
-  if (scene.smooth_normals) {
+  if (needs<F>(scene, Feature::SmoothNormals)) {
     const Vec3<V> n = normalize_any(load_corners(scene.normals, vertices).at(u, v));
     const Vec3<V> facing = select<V>(dot(n, s.geometric_normal) < V(0.0f), -n, n);
     // Where interpolation turns the normal away from the viewer, the geometric one serves.
     const auto usable =
-        (gather(scene.geometry.is_smooth, geometry) == I(1)) & (dot(facing, away) > V(1e-4f));
+        ((geometry.w & I(geometry_is_smooth)) != I(0)) & (dot(facing, away) > V(1e-4f));
     shading = select<V>(usable, facing, shading);
   }
   s.frame = frame_around(shading);

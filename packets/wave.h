@@ -2,6 +2,7 @@
 // enough to stay in the second-level cache. Rays are kept compact: a dead path leaves no hole.
 #pragma once
 
+#include "core/simd_pack.h"
 #include "core/vec.h"
 #include "packets/kernel.h"
 
@@ -19,12 +20,20 @@ struct alignas(64) Float3Array {
   FloatArray x, y, z;
 };
 
+// The order of a wave's paths: offsets from the job's first pixel and sample. It depends on the
+// job's shape alone, so waves of one shape share it.
+struct alignas(64) PathOrder {
+  int width = 0, height = 0, samples = 0;  // of the job it was made for
+  LaneLayout lanes;
+  int count = 0;
+  IntArray x, y, sample;
+};
+
 // One entry per path for as long as the wave lasts.
 struct alignas(64) PathTable {
   int count = 0;
   UIntArray pixel, sample;
-  FloatArray column, row;  // of the pixel
-  Float3Array radiance;
+  float radiance[wave_room * 4];  // RGB and 1: summed up, the last counts samples
 };
 
 // Rays on their way, with what their paths carry.
@@ -40,11 +49,11 @@ struct alignas(64) RayQueue {
 // What the ray of the same index hit; geometry -1: nothing.
 struct alignas(64) HitArray {
   FloatArray distance;
-  Float3Array normal;  // geometric, not unit
-  FloatArray u, v;     // barycentric
+  FloatArray u, v;  // barycentric
   IntArray geometry, primitive;
 };
 
+// Distance: up to which nothing may be in the way; after tracing, -infinity where something is.
 struct alignas(64) ShadowQueue {
   int count = 0;
   Float3Array origin, direction;
@@ -53,28 +62,31 @@ struct alignas(64) ShadowQueue {
   IntArray path;
 };
 
-// Indices into a RayQueue of the hits on one kind of material, and their sample values by Purpose.
-struct alignas(64) ShadeList {
+// The hits on one kind of material, side by side, and the sample values of their paths by Purpose.
+struct alignas(64) ShadeQueue {
   int count = 0;
-  IntArray ray, path;
+  Float3Array direction;          // of the ray
+  Float3Array origin;             // of the ray, and
+  FloatArray distance;            // the hit's: only where the scene has spheres
+  Float3Array throughput;
+  FloatArray barycentric_u, barycentric_v;
+  IntArray geometry, primitive, path;
+  UIntArray pixel, sample;
   FloatArray u[4], v[4];
 };
 
 struct Wave {
+  PathOrder order;
   PathTable paths;
   RayQueue rays[2];
   HitArray hits;
   ShadowQueue shadows;
-  ShadeList list;
+  ShadeQueue hits_to_shade;
 };
 
 template <class V>
 LOCKSTEP_INLINE Vec3<V> load3(const Float3Array& a, int i) {
   return {load<V>(a.x + i), load<V>(a.y + i), load<V>(a.z + i)};
-}
-template <class I>
-LOCKSTEP_INLINE Vec3<FloatOf<I>> gather3(const Float3Array& a, I i) {
-  return {gather(a.x, i), gather(a.y, i), gather(a.z, i)};
 }
 template <class V>
 LOCKSTEP_INLINE void store3(Float3Array& a, int i, const Vec3<V>& v) {
@@ -82,26 +94,18 @@ LOCKSTEP_INLINE void store3(Float3Array& a, int i, const Vec3<V>& v) {
   store(a.y + i, v.y);
   store(a.z + i, v.z);
 }
-template <class V>
-LOCKSTEP_INLINE void compress3(Float3Array& a, int at, const Vec3<V>& v, MaskOf<V> m) {
-  compress_store(a.x + at, v.x, m);
-  compress_store(a.y + at, v.y, m);
-  compress_store(a.z + at, v.z, m);
+template <int W>
+LOCKSTEP_INLINE void pack3(const Packing<W>& lanes, Float3Array& a, int at,
+                           const Vec3<Float<W>>& v) {
+  lanes.store(a.x + at, v.x);
+  lanes.store(a.y + at, v.y);
+  lanes.store(a.z + at, v.z);
 }
 
 // Adds v to the radiance of the lanes' paths, which all differ.
 template <class V>
 LOCKSTEP_INLINE void add_radiance(PathTable& paths, IntOf<V> path, const Vec3<V>& v, MaskOf<V> m) {
-  constexpr int W = width_of<V>;
-  float x[W], y[W], z[W];
-  std::int32_t p[W];
-  store(x, v.x), store(y, v.y), store(z, v.z), store(p, path);
-  for (std::uint32_t mask = bits(m); mask != 0; mask &= mask - 1) {
-    const int lane = std::countr_zero(mask);
-    paths.radiance.x[p[lane]] += x[lane];
-    paths.radiance.y[p[lane]] += y[lane];
-    paths.radiance.z[p[lane]] += z[lane];
-  }
+  add_rows(paths.radiance, path, {v.x, v.y, v.z, V(0.0f)}, m);
 }
 
 // Lanes i, i + 1, ... below count.

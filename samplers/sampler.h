@@ -45,9 +45,8 @@ template <int W>
 LOCKSTEP_INLINE void fill_own_sequence(const SamplerState& state, const SampleBatch& batch,
                                        int pair, float* u, float* v) {
   for (int i = 0; i < batch.count; i += W) {
-    const Int<W> path = load<Int<W>>(batch.path + i);
-    const UInt<W> pixel = gather(batch.pixel, path), sample = gather(batch.sample, path);
-    const auto point = sequence_point(state.sequence, pixel, sample, pair, state.seed);
+    const auto point = sequence_point(state.sequence, load<UInt<W>>(batch.pixel + i),
+                                      load<UInt<W>>(batch.sample + i), pair, state.seed);
     store(u + i, point.x);
     store(v + i, point.y);
   }
@@ -67,12 +66,12 @@ LOCKSTEP_INLINE void fill_shared_sequence(const SamplerState& state, const Sampl
   const bool perturbed = state.perturbation != Perturbation::None;
   const bool fresh = state.perturbation == Perturbation::Fresh;
   for (int i = 0; i < batch.count; i += W) {
-    const Int<W> path = load<Int<W>>(batch.path + i);
-    const UInt<W> sample = gather(batch.sample, path);
-    const Int<W> k = as_int(sample - UInt<W>(batch.first_sample));
+    const UInt<W> sample = load<UInt<W>>(batch.sample + i);
+    // Lanes behind the last path may hold anything.
+    const Int<W> k = as_int(sample - UInt<W>(batch.first_sample)) & Int<W>(max_samples_per_batch - 1);
     Vec2<V> point(gather(shared_u, k), gather(shared_v, k));
     if (perturbed) {
-      const UInt<W> pixel = gather(batch.pixel, path);
+      const UInt<W> pixel = load<UInt<W>>(batch.pixel + i);
       const V w = state.weights ? gather(state.weights, as_int(pixel)) : V(state.weight);
       if (any(w > V(0.0f))) {
         const auto offset =

@@ -16,14 +16,12 @@ struct SamplerState {
   const float* weights = nullptr;  // w per pixel, row by row
 };
 
-// The paths that a batch of values is for. `path[i]` indexes the two arrays; a path is one sample
-// of one pixel, with sample numbers in [first_sample, first_sample + samples). Arrays may be read
-// up to a full packet past `count`.
+// What a batch of values is for: samples of pixels (y * width + x), with sample numbers in
+// [first_sample, first_sample + samples). Arrays may be read up to a full packet past `count`.
 struct SampleBatch {
-  const std::int32_t* path = nullptr;
-  int count = 0;
-  const std::uint32_t* pixel = nullptr;  // y * width + x
+  const std::uint32_t* pixel = nullptr;
   const std::uint32_t* sample = nullptr;
+  int count = 0;
   std::uint32_t first_sample = 0;
   int samples = 1;
 };

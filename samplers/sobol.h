@@ -7,19 +7,11 @@
 #pragma once
 
 #include "core/hash.h"
+#include "core/simd_bits.h"
 #include "core/vec.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
-
-template <class U>
-LOCKSTEP_INLINE U reverse_bits(U x) {
-  x = (x >> 16) | (x << 16);
-  x = ((x & U(0xff00ff00u)) >> 8) | ((x & U(0x00ff00ffu)) << 8);
-  x = ((x & U(0xf0f0f0f0u)) >> 4) | ((x & U(0x0f0f0f0fu)) << 4);
-  x = ((x & U(0xccccccccu)) >> 2) | ((x & U(0x33333333u)) << 2);
-  return ((x & U(0xaaaaaaaau)) >> 1) | ((x & U(0x55555555u)) << 1);
-}
 
 // Owen's nested uniform scramble of a mirrored fraction: each digit is flipped or not by a hash of
 // the digits before it (Laine and Karras 2011, with the constants of Vegdahl 2021).

@@ -87,27 +87,28 @@ std::vector<LightCase> cases() {
 
 // A scene of these lights, each chosen with probability `choice`.
 struct LightScene {
-  std::vector<std::int32_t> kinds;
   std::vector<float> rows;
   std::vector<float> cdf;
   SceneData data;
 
   explicit LightScene(const std::vector<LightCase>& lights) {
     for (const LightCase& c : lights) append(c);
-    data.lights = {int(kinds.size()), kinds.data(), rows.data(), cdf.data()};
+    data.lights = {int(lights.size()), rows.data(), cdf.data()};
     data.spheres = true;
   }
 
  private:
   void append(const LightCase& c) {
-    kinds.push_back(std::int32_t(c.kind));
     const glm::vec3 normal =
         c.is_sphere() ? glm::vec3(0.0f) : glm::vec3(glm::normalize(c.cross_edges()));
-    for (const glm::vec3 v : {c.corner, c.edge1, c.edge2, normal, glm::vec3(3.0f, 2.0f, 1.0f)}) {
-      rows.insert(rows.end(), {v.x, v.y, v.z});
-    }
-    rows.insert(rows.end(),
-                {c.is_sphere() ? c.radius : float(c.area()), choice, c.side, 0.0f, 0.0f});
+    const auto add = [&](glm::vec3 v, float last) {
+      rows.insert(rows.end(), {v.x, v.y, v.z, last});
+    };
+    add(c.corner, c.is_sphere() ? c.radius : float(c.area()));
+    add(c.edge1, choice);
+    add(c.edge2, c.side);
+    add(normal, float(int(c.kind)));
+    add(glm::vec3(3.0f, 2.0f, 1.0f), 0.0f);
   }
 };
 

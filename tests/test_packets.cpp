@@ -33,8 +33,7 @@ RenderSettings settings_of(int spp, int depth = 4) {
 }
 
 void use_lanes(RenderSettings& s, std::string_view layout) {
-  s.lanes = parse_lane_layout(layout);
-  s.lanes_auto = layout == "auto";
+  if (layout != "auto") s.lanes = parse_lane_layout(layout);
 }
 
 class BuiltinScenes : public testing::TestWithParam<std::size_t> {};

@@ -25,9 +25,9 @@ struct CoatedBsdf {
 
 template <class I>
 LOCKSTEP_INLINE CoatedBsdf<FloatOf<I>> load_coated(const MaterialTable& t, I index) {
-  const auto alpha = material_scalar(t, index, 6);
-  return {material_color(t, index, 0),  material_color(t, index, 3),  {{alpha, alpha}},
-          material_scalar(t, index, 7), material_scalar(t, index, 8), material_scalar(t, index, 9)};
+  const auto a = material_rows(t, index, 0), b = material_rows(t, index, 4);
+  const auto c = material_rows(t, index, 8);
+  return {{a.x, a.y, a.z}, {a.w, b.x, b.y}, {{b.z, b.z}}, b.w, c.x, c.y};
 }
 
 // Share of light that gets through the coat at this angle; 1 where coat and base are just added.

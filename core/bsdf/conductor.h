@@ -16,9 +16,8 @@ struct ConductorBsdf {
 
 template <class I>
 LOCKSTEP_INLINE ConductorBsdf<FloatOf<I>> load_conductor(const MaterialTable& t, I index) {
-  return {material_color(t, index, 0),
-          material_color(t, index, 3),
-          {{material_scalar(t, index, 6), material_scalar(t, index, 7)}}};
+  const auto a = material_rows(t, index, 0), b = material_rows(t, index, 4);
+  return {{a.x, a.y, a.z}, {a.w, b.x, b.y}, {{b.z, b.w}}};
 }
 
 template <class V>

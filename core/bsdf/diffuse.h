@@ -14,7 +14,8 @@ struct DiffuseBsdf {
 
 template <class I>
 LOCKSTEP_INLINE DiffuseBsdf<FloatOf<I>> load_diffuse(const MaterialTable& t, I index) {
-  return {material_color(t, index, 0)};
+  const auto row = material_rows(t, index, 0);
+  return {{row.x, row.y, row.z}};
 }
 
 template <class V>

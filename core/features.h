@@ -1,0 +1,40 @@
+// What a scene contains, as a set of bits: kernels skip what a scene lacks, and those compiled for a
+// smaller set do not contain the code at all.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lockstep {
+
+// In the order of MaterialKind and of LightKind where they name those.
+enum class Feature : unsigned {
+  SmoothNormals,
+  Spheres,
+  Diffuse,
+  Conductor,
+  Coated,
+  QuadLights,
+  TriangleLights,
+  SphereLights,
+  Environment,
+  LightChoice,  // more than one light: one has to be chosen
+  FilterTable,  // a pixel filter other than a box over the pixel
+};
+inline constexpr unsigned feature_count = 11;
+
+using FeatureMask = std::uint32_t;
+inline constexpr FeatureMask all_features = (1u << feature_count) - 1u;
+
+constexpr FeatureMask bit(Feature f) { return 1u << unsigned(f); }
+
+template <class... F>
+constexpr FeatureMask feature_set(F... f) {
+  return (0u | ... | bit(f));
+}
+
+// Names of the features in the set, in the order above.
+std::vector<std::string> feature_names(FeatureMask set);
+
+}  // namespace lockstep

@@ -1,0 +1,405 @@
+// Compiled once per instruction set.
+#include "packets/traversal.h"
+
+#include "packets/stage_clock.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace lockstep {
+inline namespace LOCKSTEP_ISA_NAMESPACE {
+namespace {
+
+constexpr int chunk = 128;  // rays of a stream, and of a turn when two modes are compared
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+RTCScene embree(const SceneData& scene) { return static_cast<RTCScene>(scene.embree_scene); }
+
+RTCIntersectContext make_context(bool coherent) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags =
+      coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+
+template <class T, int P>
+LOCKSTEP_INLINE void copy(T (&to)[P], const T* from) {
+  std::memcpy(to, from, sizeof to);
+}
+
+// What does not differ from ray to ray; Embree leaves it as it is.
+template <int P>
+void set_constants(RTCRayNt<P>& ray) {
+  for (int lane = 0; lane < P; ++lane) {
+    ray.tnear[lane] = ray.time[lane] = 0.0f;
+    ray.mask[lane] = ~0u;
+    ray.id[lane] = unsigned(lane);
+    ray.flags[lane] = 0;
+  }
+}
+
+// Entries i... of the queue.
+template <int P, class Queue>
+LOCKSTEP_INLINE void set_rays(RTCRayNt<P>& ray, const Queue& queue, int i) {
+  copy(ray.org_x, queue.origin.x + i);
+  copy(ray.org_y, queue.origin.y + i);
+  copy(ray.org_z, queue.origin.z + i);
+  copy(ray.dir_x, queue.direction.x + i);
+  copy(ray.dir_y, queue.direction.y + i);
+  copy(ray.dir_z, queue.direction.z + i);
+}
+template <int P>
+LOCKSTEP_INLINE void set_closest(RTCRayHitNt<P>& packet, const RayQueue& queue, int i) {
+  set_rays(packet.ray, queue, i);
+  for (int lane = 0; lane < P; ++lane) packet.ray.tfar[lane] = infinity;
+  for (int lane = 0; lane < P; ++lane) packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+}
+template <int P>
+LOCKSTEP_INLINE void set_shadow(RTCRayNt<P>& ray, const ShadowQueue& queue, int i) {
+  set_rays(ray, queue, i);
+  copy(ray.tfar, queue.distance + i);
+}
+template <int P>
+LOCKSTEP_INLINE void keep_hits(const RTCRayHitNt<P>& packet, HitArray& hits, int i) {
+  std::memcpy(hits.geometry + i, packet.hit.geomID, sizeof packet.hit.geomID);
+  std::memcpy(hits.primitive + i, packet.hit.primID, sizeof packet.hit.primID);
+  std::memcpy(hits.distance + i, packet.ray.tfar, sizeof packet.ray.tfar);
+  std::memcpy(hits.u + i, packet.hit.u, sizeof packet.hit.u);
+  std::memcpy(hits.v + i, packet.hit.v, sizeof packet.hit.v);
+}
+
+// -1 in the lanes that carry a ray, as Embree wants it.
+template <int P>
+struct alignas(64) Valid {
+  std::int32_t lane[P];
+
+  explicit Valid(int rays) {
+    for (int i = 0; i < P; ++i) lane[i] = i < rays ? -1 : 0;
+  }
+};
+
+template <int P>
+LOCKSTEP_INLINE void intersect(RTCScene scene, RTCIntersectContext* context, const Valid<P>& valid,
+                               RTCRayHitNt<P>* packet) {
+  void* p = packet;
+  if constexpr (P == 1) rtcIntersect1(scene, context, static_cast<RTCRayHit*>(p));
+  if constexpr (P == 4) rtcIntersect4(valid.lane, scene, context, static_cast<RTCRayHit4*>(p));
+  if constexpr (P == 8) rtcIntersect8(valid.lane, scene, context, static_cast<RTCRayHit8*>(p));
+  if constexpr (P == 16) rtcIntersect16(valid.lane, scene, context, static_cast<RTCRayHit16*>(p));
+}
+template <int P>
+LOCKSTEP_INLINE void occlude(RTCScene scene, RTCIntersectContext* context, const Valid<P>& valid,
+                             RTCRayNt<P>* packet) {
+  void* p = packet;
+  if constexpr (P == 1) rtcOccluded1(scene, context, static_cast<RTCRay*>(p));
+  if constexpr (P == 4) rtcOccluded4(valid.lane, scene, context, static_cast<RTCRay4*>(p));
+  if constexpr (P == 8) rtcOccluded8(valid.lane, scene, context, static_cast<RTCRay8*>(p));
+  if constexpr (P == 16) rtcOccluded16(valid.lane, scene, context, static_cast<RTCRay16*>(p));
+}
+
+template <int P>
+void closest_packets(RTCScene scene, bool coherent, const RayQueue& rays, int begin, int end,
+                     HitArray& hits) {
+  alignas(64) RTCRayHitNt<P> packet{};
+  set_constants(packet.ray);
+  RTCIntersectContext context = make_context(coherent);
+  const Valid<P> all(P);
+  for (int i = begin; i < end; i += P) {
+    set_closest(packet, rays, i);
+    if (end - i >= P) {
+      intersect<P>(scene, &context, all, &packet);
+    } else {
+      intersect<P>(scene, &context, Valid<P>(end - i), &packet);
+    }
+    keep_hits(packet, hits, i);
+  }
+}
+
+template <int P>
+void occluded_packets(RTCScene scene, bool coherent, ShadowQueue& rays, int begin, int end) {
+  RTCIntersectContext context = make_context(coherent);
+  alignas(64) RTCRayNt<P> packet{};
+  set_constants(packet);
+  const Valid<P> all(P);
+  for (int i = begin; i < end; i += P) {
+    set_shadow(packet, rays, i);
+    if (end - i >= P) {
+      occlude<P>(scene, &context, all, &packet);
+    } else {
+      occlude<P>(scene, &context, Valid<P>(end - i), &packet);
+    }
+    std::memcpy(rays.distance + i, packet.tfar, sizeof packet.tfar);
+  }
+}
+
+// Streams: N rays side by side in each element. Lanes behind the end of the queue get an empty
+// interval, which Embree takes for inactive.
+template <int N>
+void retire_lanes(RTCRayNt<N>& ray, int rays) {
+  for (int lane = std::max(rays, 0); lane < N; ++lane) {
+    ray.tnear[lane] = infinity;
+    ray.tfar[lane] = -infinity;
+  }
+}
+
+template <int N>
+void closest_stream(RTCScene scene, bool coherent, const RayQueue& rays, int begin, int end,
+                    HitArray& hits) {
+  alignas(64) RTCRayHitNt<N> stream[chunk / N];
+  for (auto& element : stream) set_constants(element.ray);
+  RTCIntersectContext context = make_context(coherent);
+  for (int first = begin; first < end; first += chunk) {
+    const int elements = (std::min(chunk, end - first) + N - 1) / N;
+    for (int m = 0; m < elements; ++m) set_closest(stream[m], rays, first + m * N);
+    retire_lanes(stream[elements - 1].ray, end - first - (elements - 1) * N);
+    void* p = stream;
+    if constexpr (N == 1) {
+      rtcIntersect1M(scene, &context, static_cast<RTCRayHit*>(p), unsigned(elements),
+                     sizeof stream[0]);
+    } else {
+      rtcIntersectNM(scene, &context, static_cast<RTCRayHitN*>(p), N, unsigned(elements),
+                     sizeof stream[0]);
+    }
+    for (int m = 0; m < elements; ++m) keep_hits(stream[m], hits, first + m * N);
+  }
+}
+
+template <int N>
+void occluded_stream(RTCScene scene, bool coherent, ShadowQueue& rays, int begin, int end) {
+  RTCIntersectContext context = make_context(coherent);
+  alignas(64) RTCRayNt<N> stream[chunk / N];
+  for (auto& element : stream) set_constants(element);
+  for (int first = begin; first < end; first += chunk) {
+    const int elements = (std::min(chunk, end - first) + N - 1) / N;
+    for (int m = 0; m < elements; ++m) set_shadow(stream[m], rays, first + m * N);
+    retire_lanes(stream[elements - 1], end - first - (elements - 1) * N);
+    void* p = stream;
+    if constexpr (N == 1) {
+      rtcOccluded1M(scene, &context, static_cast<RTCRay*>(p), unsigned(elements), sizeof stream[0]);
+    } else {
+      rtcOccludedNM(scene, &context, static_cast<RTCRayN*>(p), N, unsigned(elements),
+                    sizeof stream[0]);
+    }
+    for (int m = 0; m < elements; ++m) {
+      std::memcpy(rays.distance + first + m * N, stream[m].tfar, sizeof stream[m].tfar);
+    }
+  }
+}
+
+// The distances to the spheres among the hits, computed alike for every mode: Embree's intersectors
+// of single rays and of packets round them differently. Embree's distance tells which of the two
+// intersections it is. Stable for small and far spheres (Haines et al. 2019, section 7.2).
+void refine_distances(const SceneData& scene, const RayQueue& rays, int begin, int end,
+                      HitArray& hits) {
+  constexpr int W = native_lanes;
+  using V = Float<W>;
+  using I = Int<W>;
+  for (int i = begin; i < end; i += W) {
+    const I geometry = load<I>(hits.geometry + i);
+    const Mask<W> hit = lanes_below<W>(i, end) & !(geometry < I(0));
+    const I g = select(hit, geometry, I(0));
+    const I flags = gather(scene.geometry.rows + 3, g * I(geometry_stride));
+    const Mask<W> sphere = hit & ((flags & I(geometry_is_sphere)) != I(0));
+    if (none(sphere)) continue;
+    const auto row = gather_rows(scene.geometry.spheres, g * I(4));
+    const Vec3<V> direction = load3<V>(rays.direction, i);
+    const Vec3<V> to_centre = Vec3<V>(row.x, row.y, row.z) - load3<V>(rays.origin, i);
+    const V middle = dot(to_centre, direction);
+    const Vec3<V> off = fma(-middle, direction, to_centre);  // from the ray's closest point
+    const V half_chord = sqrt(max(V(0.0f), fma(row.w, row.w, -dot(off, off))));
+    const V distance = load<V>(hits.distance + i);
+    const V refined = select(distance < middle, middle - half_chord, middle + half_chord);
+    store(hits.distance + i, select(sphere, refined, distance));
+  }
+}
+
+// Where a ray hits two triangles at one distance, on an edge they share or where they lie on each
+// other, the one visited last counts. Incoherent modes all visit in the order of a single ray,
+// coherent ones in an order of their own: they trace such hits again as single rays.
+
+// Next to an edge, in barycentric coordinates: some ten times the tolerance of Embree's test, and
+// still only a ray in a hundred thousand.
+constexpr float edge_zone = 0x1p-18f;
+
+template <int W>
+Mask<W> may_tie(const SceneData& scene, const HitArray& hits, int i, Mask<W> hit) {
+  using V = Float<W>;
+  using I = Int<W>;
+  const V u = load<V>(hits.u + i), v = load<V>(hits.v + i);
+  Mask<W> tie = hit & (min(min(u, v), V(1.0f) - u - v) < V(edge_zone));
+  if (!scene.coincident && none(tie)) return tie;
+  const I row = select(hit, load<I>(hits.geometry + i), I(0)) * I(geometry_stride);
+  if (scene.features & bit(Feature::Spheres)) {  // where u and v are always 0
+    const I flags = gather(scene.geometry.rows + 3, row);
+    hit = hit & ((flags & I(geometry_is_sphere)) == I(0));
+    tie = tie & hit;
+  }
+  if (!scene.coincident) return tie;
+  const I triangle = gather(scene.geometry.rows, row) + load<I>(hits.primitive + i);
+  std::int32_t at[W], coincident[W];
+  store(at, select(hit, triangle, I(0)));
+  for (int lane = 0; lane < W; ++lane) coincident[lane] = scene.coincident[at[lane]];
+  return tie | (hit & (load<I>(coincident) != I(0)));
+}
+
+void settle_ties(const SceneData& scene, const RayQueue& rays, int begin, int end,
+                 HitArray& hits) {
+  constexpr int W = native_lanes;
+  for (int i = begin; i < end; i += W) {
+    const Mask<W> hit = lanes_below<W>(i, end) & !(load<Int<W>>(hits.geometry + i) < Int<W>(0));
+    std::uint32_t left = bits(may_tie<W>(scene, hits, i, hit));
+    for (; left != 0; left &= left - 1) {
+      const int ray = i + std::countr_zero(left);
+      closest_packets<1>(embree(scene), false, rays, ray, ray + 1, hits);
+    }
+  }
+}
+
+// Traces chunks by the two modes of the plan in turn, and reports what they took per ray.
+template <class Trace>
+void compare_modes(const TraversalPlan& plan, int rays, TraversalPolicy& policy, RayKind kind,
+                   int bounce, const Trace& trace) {
+  std::uint64_t ticks[2] = {};
+  int traced[2] = {};
+  for (int begin = 0, turn = 0; begin < rays; begin += chunk, turn ^= 1) {
+    const int end = std::min(begin + chunk, rays);
+    const std::uint64_t start = read_ticks();
+    trace(turn == 0 ? plan.mode : *plan.trial, begin, end);
+    ticks[turn] += read_ticks() - start;
+    traced[turn] += end - begin;
+  }
+  const double per_ray[2] = {double(ticks[0]) / traced[0], double(ticks[1]) / traced[1]};
+  policy.record(kind, bounce, *plan.trial, per_ray[1] / per_ray[0]);
+}
+
+template <class Trace>
+void trace_planned(TraversalPolicy& policy, RayKind kind, int bounce, int rays, TileCounts& counts,
+                   const Trace& trace) {
+  if (rays == 0) return;
+  const auto traced = [&](TraversalMode mode, int begin, int end) {
+    trace(mode, begin, end);
+    const int n = end - begin, width = lanes(mode.packets), packets = (n + width - 1) / width;
+    counts.traced[int(kind)][index(mode)] += std::uint64_t(n);
+    counts.packets += std::uint64_t(packets);
+    counts.lanes += std::uint64_t(packets) * std::uint64_t(width);
+    counts.active_lanes += std::uint64_t(n);
+  };
+  const TraversalPlan plan = policy.plan(kind, bounce, rays);
+  if (plan.trial) {
+    compare_modes(plan, rays, policy, kind, bounce, traced);
+  } else {
+    traced(plan.mode, 0, rays);
+  }
+}
+
+}  // namespace
+
+void trace_closest(const SceneData& scene, TraversalMode mode, const RayQueue& rays, int begin,
+                   int end, HitArray& hits) {
+  const auto trace = [&](auto function) {
+    function(embree(scene), mode.coherent, rays, begin, end, hits);
+  };
+  switch (mode.packets) {
+    case Packets::Single:
+      trace(closest_packets<1>);
+      break;
+    case Packets::Four:
+      trace(closest_packets<4>);
+      break;
+    case Packets::Eight:
+      trace(closest_packets<8>);
+      break;
+    case Packets::Sixteen:
+      trace(closest_packets<16>);
+      break;
+    case Packets::Stream1M:
+      trace(closest_stream<1>);
+      break;
+    case Packets::StreamNM:
+      trace(closest_stream<16>);
+      break;
+  }
+  if (mode.coherent) settle_ties(scene, rays, begin, end, hits);
+  if (scene.features & bit(Feature::Spheres)) refine_distances(scene, rays, begin, end, hits);
+}
+
+void trace_occluded(const SceneData& scene, TraversalMode mode, ShadowQueue& shadows, int begin,
+                    int end) {
+  const auto trace = [&](auto function) {
+    function(embree(scene), mode.coherent, shadows, begin, end);
+  };
+  switch (mode.packets) {
+    case Packets::Single:
+      trace(occluded_packets<1>);
+      break;
+    case Packets::Four:
+      trace(occluded_packets<4>);
+      break;
+    case Packets::Eight:
+      trace(occluded_packets<8>);
+      break;
+    case Packets::Sixteen:
+      trace(occluded_packets<16>);
+      break;
+    case Packets::Stream1M:
+      trace(occluded_stream<1>);
+      break;
+    case Packets::StreamNM:
+      trace(occluded_stream<16>);
+      break;
+  }
+}
+
+void trace_closest(const SceneData& scene, TraversalPolicy& policy, RayKind kind, int bounce,
+                   const RayQueue& rays, HitArray& hits, TileCounts& counts) {
+  trace_planned(policy, kind, bounce, rays.count, counts,
+                [&](TraversalMode mode, int begin, int end) {
+                  trace_closest(scene, mode, rays, begin, end, hits);
+                });
+}
+
+void trace_occluded(const SceneData& scene, TraversalPolicy& policy, int bounce,
+                    ShadowQueue& shadows, TileCounts& counts) {
+  trace_planned(policy, RayKind::Shadow, bounce, shadows.count, counts,
+                [&](TraversalMode mode, int begin, int end) {
+                  trace_occluded(scene, mode, shadows, begin, end);
+                });
+}
+
+void replay(const SceneData& scene, const RayLog& log, TraversalPolicy& policy,
+            std::uint64_t* ticks) {
+  const auto rays = std::make_unique<RayQueue>();
+  const auto shadows = std::make_unique<ShadowQueue>();
+  const auto hits = std::make_unique<HitArray>();
+  TileCounts counts;
+  for (const RayLog::Queue& queue : log.queues) {
+    const float* from = log.values.data() + queue.first;
+    const auto load_rays = [&](auto& to) {
+      to.count = queue.count;
+      for (float* array : {to.origin.x, to.origin.y, to.origin.z, to.direction.x, to.direction.y,
+                           to.direction.z}) {
+        std::memcpy(array, from, size_t(queue.count) * sizeof(float));
+        from += queue.count;
+      }
+    };
+    if (queue.kind == RayKind::Shadow) {
+      load_rays(*shadows);
+      std::memcpy(shadows->distance, from, size_t(queue.count) * sizeof(float));
+    } else {
+      load_rays(*rays);
+    }
+    const std::uint64_t start = read_ticks();
+    if (queue.kind == RayKind::Shadow) {
+      trace_occluded(scene, policy, queue.bounce, *shadows, counts);
+    } else {
+      trace_closest(scene, policy, queue.kind, queue.bounce, *rays, *hits, counts);
+    }
+    *ticks++ = read_ticks() - start;
+  }
+}
+
+}  // namespace LOCKSTEP_ISA_NAMESPACE
+}  // namespace lockstep
