@@ -6,6 +6,7 @@
 //   gain_single    single rays' time / time under the policy,
 //   paths          camera paths per second of CPU time.
 // Renders and replays alternate; figures are medians. One thread.
+#include "bench_main.h"
 #include "bench_scene.h"
 #include "packets/replay.h"
 
@@ -57,8 +58,5 @@ void register_all() {
 }  // namespace lockstep
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  lockstep::register_all();
-  benchmark::RunSpecifiedBenchmarks();
+  return lockstep::run_benchmarks(argc, argv, lockstep::register_all);
 }

@@ -1,5 +1,7 @@
 // Cost of sample values: nanoseconds of CPU time per value, by sampler, instruction set and width.
 // One batch is what the path integrator asks for: 256 pixels of a tile, four samples of each.
+#include "bench_main.h"
+#include "bench_sampler.h"
 #include "packets/kernel.h"
 
 #include <benchmark/benchmark.h>
@@ -13,28 +15,15 @@ namespace {
 constexpr std::uint32_t seed = 1;
 constexpr int pixels = 256, samples = 4, count = pixels * samples;
 
-SamplerState state_of(const char* text) {
-  const SamplerSpec spec = parse_sampler(text);
-  SamplerState state;
-  state.seed = seed;
-  state.shared = spec.shared;
-  state.sequence = spec.sequence;
-  state.perturbation = spec.perturbation;
-  state.weight = spec.weight;
-  return state;
-}
-
 void sample(benchmark::State& loop, const Kernel& kernel, const char* text) {
-  std::vector<std::int32_t> path(count + 16);
   std::vector<std::uint32_t> pixel(count + 16), number(count + 16);
   for (int i = 0; i < count; ++i) {
-    path[size_t(i)] = i;
     pixel[size_t(i)] = std::uint32_t(i % pixels);
     number[size_t(i)] = std::uint32_t(i / pixels);
   }
   std::vector<float> u(count + 16), v(count + 16);
-  const SamplerState state = state_of(text);
-  const SampleBatch batch{path.data(), count, pixel.data(), number.data(), 0, samples};
+  const SamplerState state = sampler_state(text, seed);
+  const SampleBatch batch{pixel.data(), number.data(), count, 0, samples};
   int pair = 0;
   for (auto _ : loop) {
     kernel.fill_pair(state, batch, pair++ & 31, u.data(), v.data());
@@ -62,8 +51,5 @@ void register_all() {
 }  // namespace lockstep
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  lockstep::register_all();
-  benchmark::RunSpecifiedBenchmarks();
+  return lockstep::run_benchmarks(argc, argv, lockstep::register_all);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -17,18 +18,21 @@ const std::filesystem::path killeroo =
 }  // namespace
 
 std::vector<std::string> bench_scene_names() {
-  std::vector<std::string> names{"cornell", "reef", "meadow", "spheres"};
-  if (std::filesystem::exists(killeroo)) names.insert(names.begin(), "killeroo-quad");
-  return names;
+  return bench_scene_names({"killeroo-quad", "cornell", "reef", "meadow", "spheres"});
 }
 
-const Scene& bench_scene(const std::string& name) {
-  static std::map<std::string, std::unique_ptr<Scene>> scenes;
-  std::unique_ptr<Scene>& scene = scenes[name];
+std::vector<std::string> bench_scene_names(const std::vector<std::string>& names) {
+  std::vector<std::string> present = names;
+  if (!std::filesystem::exists(killeroo)) std::erase(present, "killeroo-quad");
+  return present;
+}
+
+const Scene& bench_scene(const std::string& name, int pixels) {
+  static std::map<std::pair<std::string, int>, std::unique_ptr<Scene>> scenes;
+  std::unique_ptr<Scene>& scene = scenes[{name, pixels}];
   if (!scene) {
-    SceneDescription description =
-        read_scene(name == "killeroo-quad" ? killeroo.string() : name);
-    const double scale = 342.0 / std::max(description.film.width, description.film.height);
+    SceneDescription description = read_scene(name == "killeroo-quad" ? killeroo.string() : name);
+    const double scale = double(pixels) / std::max(description.film.width, description.film.height);
     description.film.width = int(scale * description.film.width);
     description.film.height = int(scale * description.film.height);
     scene = std::make_unique<Scene>(std::move(description), embree_isa(choose_isa()));

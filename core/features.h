@@ -1,5 +1,5 @@
-// What a scene contains, as a set of bits: kernels skip what a scene lacks, and those compiled for a
-// smaller set do not contain the code at all.
+// What a scene contains, as a set of bits: kernels skip what a scene lacks, and those compiled for
+// a smaller set do not contain the code at all.
 #pragma once
 
 #include <cstdint>

@@ -107,7 +107,6 @@ FeatureMask light_features(const FlatScene& flat) {
 // Normals for every vertex as soon as one mesh has them; the others' stay unused.
 void append_normals(FlatScene& flat, const SceneDescription& description) {
   if (!(flat.features & bit(Feature::SmoothNormals))) return;
-  flat.normals.reserve(flat.positions.size());
   for (const Shape& shape : description.shapes) {
     const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
     if (!mesh) continue;
@@ -117,7 +116,8 @@ void append_normals(FlatScene& flat, const SceneDescription& description) {
   }
 }
 
-// Embree reads 16 bytes per vertex, kernels rows of four values; lanes on spheres look up triangle 0.
+// Embree reads 16 bytes per vertex, kernels rows of four values; lanes on spheres look up triangle
+// 0.
 void pad(FlatScene& flat) {
   append(flat.positions, glm::vec3(0.0f));
   if (!flat.normals.empty()) append(flat.normals, glm::vec3(0.0f));
@@ -125,10 +125,27 @@ void pad(FlatScene& flat) {
   flat.material_parameters.insert(flat.material_parameters.end(), 3, 0.0f);
 }
 
+// Exact sizes: large arrays that grow by doubling would take up to twice their memory.
+void reserve(const SceneDescription& description, FlatScene& flat) {
+  std::size_t vertices = 0, triangles = 0;
+  bool smooth = false;
+  for (const Shape& shape : description.shapes) {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    if (!mesh) continue;
+    vertices += mesh->positions.size();
+    triangles += mesh->triangles.size();
+    smooth = smooth || !mesh->normals.empty();
+  }
+  flat.positions.reserve(3 * vertices + 3);
+  if (smooth) flat.normals.reserve(3 * vertices + 3);
+  flat.triangles.reserve(3 * triangles + 4);
+}
+
 }  // namespace
 
 FlatScene flatten(const SceneDescription& description) {
   FlatScene flat;
+  reserve(description, flat);
   for (const Material& m : description.materials) append_material(flat, m);
   for (const Shape& shape : description.shapes) append_shape(flat, shape);
   flat.features = shape_features(flat);
@@ -160,11 +177,20 @@ std::uint64_t fingerprint(const FlatScene& flat) {
               &flat.light_rows, &flat.filter_x, &flat.filter_y, &camera}) {
     add(*values);
   }
-  for (const auto* values :
-       {&flat.triangles, &flat.geometry_rows, &flat.material_kinds}) {
+  for (const auto* values : {&flat.triangles, &flat.geometry_rows, &flat.material_kinds}) {
     add(*values);
   }
   return hash;
+}
+
+std::size_t memory_bytes(const FlatScene& flat) {
+  const auto sum = [](const auto&... arrays) {
+    return (0u + ... + (arrays.capacity() * sizeof(arrays[0])));
+  };
+  return sum(flat.positions, flat.normals, flat.triangles, flat.geometries, flat.geometry_rows,
+             flat.coincident, flat.spheres, flat.material_kinds, flat.material_parameters,
+             flat.light_of_primitive, flat.light_kinds, flat.light_rows, flat.light_cdf,
+             flat.filter_x, flat.filter_y);
 }
 
 SceneData view(const FlatScene& flat) {

@@ -20,7 +20,7 @@ struct FlatScene {
   std::vector<FlatGeometry> geometries;
   std::vector<std::int32_t> geometry_rows;
   std::vector<std::uint8_t> coincident;  // see core/coincidence.h
-  std::vector<float> spheres;  // centre and radius per geometry
+  std::vector<float> spheres;            // centre and radius per geometry
   std::vector<std::int32_t> material_kinds;
   std::vector<float> material_parameters;
   std::vector<std::int32_t> light_of_primitive;
@@ -34,6 +34,9 @@ struct FlatScene {
 };
 
 FlatScene flatten(const SceneDescription& description);
+
+// Of all arrays.
+std::size_t memory_bytes(const FlatScene& flat);
 
 // Of every number in `flat`: scenes that differ anywhere have different fingerprints.
 std::uint64_t fingerprint(const FlatScene& flat);

@@ -1,4 +1,5 @@
-// Images in memory, and files of them. Only image_io.cpp knows OpenImageIO.
+// Images in memory, and files of them. Only exr_file.cpp knows OpenEXR, and only image_formats.cpp,
+// a module loaded when it is needed, knows OpenImageIO.
 #pragma once
 
 #include <map>
@@ -28,15 +29,15 @@ struct Image {
 // Settings kept in a file's header, as strings: EXR attributes, PNG text.
 using Metadata = std::map<std::string, std::string>;
 
-// Reads any format OpenImageIO reads. Integer formats that are sRGB come back linear; alpha is
-// dropped; grey becomes RGB. Throws Error.
+// Reads EXR and any format OpenImageIO reads. Integer formats that are sRGB come back linear; alpha
+// is dropped; grey becomes RGB. Throws Error.
 Image read_image(const std::string& path);
 
 // Reads the header's settings (those that write_image stored).
 Metadata read_metadata(const std::string& path);
 
 // True for the extensions that write_image knows: .exr and .hdr as float; .png, .jpg and some more
-// as 8-bit sRGB.
+// as 8-bit sRGB. Throws Error where the module that writes such a file is missing.
 bool can_write_image(const std::string& path);
 
 // Writes float EXR (or what the extension asks for; 8-bit formats get the sRGB curve).

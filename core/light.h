@@ -33,8 +33,15 @@ LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {
     return gather_rows(t.rows + column, index * I(light_stride));
   };
   const auto a = row(0), b = row(4), c = row(8), d = row(12), e = row(16);
-  return {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}, {d.x, d.y, d.z}, {e.x, e.y, e.z},
-          a.w,             b.w,             c.w,             d.w};
+  return {{a.x, a.y, a.z},
+          {b.x, b.y, b.z},
+          {c.x, c.y, c.z},
+          {d.x, d.y, d.z},
+          {e.x, e.y, e.z},
+          a.w,
+          b.w,
+          c.w,
+          d.w};
 }
 
 // The light whose interval of the cumulative distribution holds u in [0, 1).

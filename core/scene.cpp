@@ -5,6 +5,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <atomic>
 #include <utility>
 
 namespace lockstep {
@@ -58,7 +59,21 @@ void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id
 
 }  // namespace
 
+// Embree asks before it allocates and tells when it frees, from any thread.
+struct EmbreeMemory {
+  std::atomic<std::ptrdiff_t> bytes = 0, peak = 0;
+
+  static bool count(void* self, ssize_t bytes, bool) {
+    auto& m = *static_cast<EmbreeMemory*>(self);
+    const std::ptrdiff_t now = m.bytes += bytes;
+    for (std::ptrdiff_t peak = m.peak; now > peak && !m.peak.compare_exchange_weak(peak, now);) {
+    }
+    return true;
+  }
+};
+
 struct Scene::Storage {
+  EmbreeMemory embree_memory;    // outlives the device
   SceneDescription description;  // without its geometry, which `flat` holds
   FlatScene flat;
   DeviceHandle device;
@@ -80,9 +95,10 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
 
   s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));
   if (!s.device) throw Error("Embree cannot start for instruction set " + embree_isa);
+  rtcSetDeviceMemoryMonitorFunction(s.device.get(), EmbreeMemory::count, &s.embree_memory);
   s.scene.reset(rtcNewScene(s.device.get()));
-  // Robust: no ray slips between triangles, and every traversal mode finds the same distances to the
-  // last bit.
+  // Robust: no ray slips between triangles, and every traversal mode finds the same distances to
+  // the last bit.
   rtcSetSceneFlags(s.scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s.scene.get(), RTC_BUILD_QUALITY_HIGH);
   for (unsigned id = 0; id < s.flat.geometries.size(); ++id) {
@@ -102,6 +118,10 @@ const SceneDescription& Scene::description() const { return storage_->descriptio
 const SceneData& Scene::data() const { return storage_->data; }
 FeatureMask Scene::features() const { return storage_->data.features; }
 std::size_t Scene::triangle_count() const { return (storage_->flat.triangles.size() - 4) / 3; }
+SceneMemory Scene::memory() const {
+  return {memory_bytes(storage_->flat), std::size_t(storage_->embree_memory.bytes),
+          std::size_t(storage_->embree_memory.peak)};
+}
 std::uint64_t Scene::fingerprint() const { return storage_->fingerprint; }
 
 }  // namespace lockstep

@@ -11,6 +11,13 @@
 
 namespace lockstep {
 
+// Bytes that a scene takes.
+struct SceneMemory {
+  std::size_t geometry = 0;     // the arrays that Embree and the kernels read
+  std::size_t embree = 0;       // Embree's structures
+  std::size_t embree_peak = 0;  // and what it took at most while building them
+};
+
 // Owns the arrays that SceneData points into. Immutable after construction; shared by threads.
 class Scene {
  public:
@@ -25,6 +32,7 @@ class Scene {
   const SceneData& data() const;                // for kernels
   FeatureMask features() const;
   std::size_t triangle_count() const;
+  SceneMemory memory() const;
   std::uint64_t fingerprint() const;  // of all that images of the scene depend on
 
  private:

@@ -95,7 +95,6 @@ constexpr bool needs(const SceneData& scene, Feature feature) {
   return (F & bit(feature)) != 0u && (scene.features & bit(feature)) != 0u;
 }
 
-
 inline constexpr FeatureMask area_light_features =
     feature_set(Feature::QuadLights, Feature::TriangleLights, Feature::SphereLights);
 inline constexpr FeatureMask material_features =

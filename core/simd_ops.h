@@ -252,33 +252,6 @@ LOCKSTEP_INLINE Lanes<T, W> gather(const T* base, Lanes<std::int32_t, W> index) 
       index);
 }
 
-// Writes the lanes where m is set, in order and without gaps; returns how many. May write
-// width_of<V> elements in all, whatever the mask: leave room behind the end.
-template <class T>
-requires std::is_arithmetic_v<T> LOCKSTEP_INLINE int compress_store(T* p, T v, bool m) {
-  *p = v;
-  return m;
-}
-template <class T, int W>
-LOCKSTEP_INLINE int compress_store(T* p, Lanes<T, W> v, LaneMask<W> m) {
-#if defined(__AVX512F__)
-  if constexpr (W == 16) {
-    const __mmask16 k = __mmask16(bits(m));
-    _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(k, (__m512i)v.s));
-    return std::popcount(unsigned(k));
-  }
-#endif
-  T values[W];
-  store(values, v);
-  const std::uint32_t mask = bits(m);
-  int n = 0;
-  for (int lane = 0; lane < W; ++lane) {
-    p[n] = values[lane];
-    n += int(mask >> lane & 1u);
-  }
-  return n;
-}
-
 }  // namespace LOCKSTEP_ISA_NAMESPACE
 }  // namespace lockstep
 

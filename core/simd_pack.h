@@ -67,8 +67,7 @@ class Packing {
     } else if constexpr (N == 16) {
       _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(__mmask16(mask), (__m512i)v.s));
     } else if constexpr (N == 8) {
-      _mm256_storeu_si256((__m256i*)p,
-                          _mm256_maskz_compress_epi32(__mmask8(mask), (__m256i)v.s));
+      _mm256_storeu_si256((__m256i*)p, _mm256_maskz_compress_epi32(__mmask8(mask), (__m256i)v.s));
     } else {
       _mm_storeu_si128((__m128i*)p, _mm_maskz_compress_epi32(__mmask8(mask), (__m128i)v.s));
     }

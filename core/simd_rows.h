@@ -18,19 +18,19 @@ struct Rows {
 namespace detail {
 
 #if defined(__AVX512F__)
-#define LOCKSTEP_REGISTER_OP(x, name, ...)         \
-  if constexpr (sizeof(x) == 64) {                 \
+#define LOCKSTEP_REGISTER_OP(x, name, ...)          \
+  if constexpr (sizeof(x) == 64) {                  \
     return decltype(x)(_mm512_##name(__VA_ARGS__)); \
-  } else if constexpr (sizeof(x) == 32) {          \
+  } else if constexpr (sizeof(x) == 32) {           \
     return decltype(x)(_mm256_##name(__VA_ARGS__)); \
-  } else {                                         \
+  } else {                                          \
     return decltype(x)(_mm_##name(__VA_ARGS__));    \
   }
 #elif defined(__AVX__)
-#define LOCKSTEP_REGISTER_OP(x, name, ...)         \
-  if constexpr (sizeof(x) == 32) {                 \
+#define LOCKSTEP_REGISTER_OP(x, name, ...)          \
+  if constexpr (sizeof(x) == 32) {                  \
     return decltype(x)(_mm256_##name(__VA_ARGS__)); \
-  } else {                                         \
+  } else {                                          \
     return decltype(x)(_mm_##name(__VA_ARGS__));    \
   }
 #else
@@ -84,7 +84,7 @@ LOCKSTEP_INLINE typename NativeVector<float, W>::type load_rows(const float* bas
       const __m256 high = _mm256_insertf128_ps(
           _mm256_castps128_ps256(_mm_loadu_ps(base + index[8])), _mm_loadu_ps(base + index[12]), 1);
       return (typename NativeVector<float, W>::type)_mm512_insertf32x8(_mm512_castps256_ps512(low),
-                                                                      high, 1);
+                                                                       high, 1);
     }
 #endif
   }
@@ -104,7 +104,8 @@ LOCKSTEP_INLINE Rows<Lanes<float, W>> gather_float_rows(const float* base,
                                   .transposed();
     return {V::from(columns.a), V::from(columns.b), V::from(columns.c), V::from(columns.d)};
   } else {
-    const auto low = gather_float_rows(base, index.s.lo), high = gather_float_rows(base, index.s.hi);
+    const auto low = gather_float_rows(base, index.s.lo),
+               high = gather_float_rows(base, index.s.hi);
     return {V::from({low.x, high.x}), V::from({low.y, high.y}), V::from({low.z, high.z}),
             V::from({low.w, high.w})};
   }
@@ -139,8 +140,7 @@ LOCKSTEP_INLINE Rows<Lanes<T, W>> gather_rows(const T* base, Lanes<std::int32_t,
   if constexpr (std::is_same_v<T, float>) {
     return rows;
   } else {
-    const auto bits_of = [](Lanes<float, W> a)
-                             LOCKSTEP_LAMBDA { return as_int(as_uint(a)); };
+    const auto bits_of = [](Lanes<float, W> a) LOCKSTEP_LAMBDA { return as_int(as_uint(a)); };
     return {bits_of(rows.x), bits_of(rows.y), bits_of(rows.z), bits_of(rows.w)};
   }
 }

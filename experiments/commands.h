@@ -13,6 +13,7 @@ using RunCommand = std::function<void()>;
 void add_render_command(CLI::App& program, RunCommand& run);
 void add_compare_command(CLI::App& program, RunCommand& run);
 void add_demo_command(CLI::App& program, RunCommand& run);
+void add_profile_command(CLI::App& program, RunCommand& run);
 void add_metrics_command(CLI::App& program, RunCommand& run);
 void add_scenes_command(CLI::App& program, RunCommand& run);
 void add_samplers_command(CLI::App& program, RunCommand& run);

@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
   lockstep::add_render_command(program, run);
   lockstep::add_compare_command(program, run);
   lockstep::add_demo_command(program, run);
+  lockstep::add_profile_command(program, run);
   lockstep::add_metrics_command(program, run);
   lockstep::add_scenes_command(program, run);
   lockstep::add_samplers_command(program, run);

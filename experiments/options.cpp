@@ -1,6 +1,7 @@
 #include "experiments/options.h"
 
 #include "core/error.h"
+#include "core/read_scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,6 +99,40 @@ RenderSettings render_settings(const RendererOptions& options) {
   settings.specialized = !options.general;
   if (options.lanes != "auto") settings.lanes = parse_lane_layout(options.lanes);
   return settings;
+}
+
+SceneDescription read_described(const std::string& scene, const RendererOptions& options) {
+  SceneDescription description = read_scene(scene);
+  for (const std::string& warning : description.warnings) {
+    fmt::print(stderr, "lockstep: warning: {}\n", warning);
+  }
+  if (!options.resolution.empty()) {
+    const glm::ivec2 size = parse_resolution(options.resolution);
+    description.film.width = size.x;
+    description.film.height = size.y;
+  }
+  return description;
+}
+
+std::vector<float> parse_weights(std::string_view text) {
+  std::vector<float> weights;
+  for (std::string_view rest = text;;) {
+    const std::size_t comma = rest.find(',');
+    const std::string_view item = rest.substr(0, comma);
+    float value = -1.0f;
+    const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), value);
+    if (error != std::errc() || end != item.data() + item.size() ||
+        !(value >= 0.0f && value <= 1.0f)) {
+      throw UsageError(fmt::format(
+          "--weights: '{}' is not a list of numbers from 0 to 1, such as 0,0.125,1", text));
+    }
+    weights.push_back(value);
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  std::sort(weights.begin(), weights.end());
+  weights.erase(std::unique(weights.begin(), weights.end()), weights.end());
+  return weights;
 }
 
 glm::ivec2 parse_resolution(std::string_view text) {

@@ -34,6 +34,13 @@ void add_renderer_options(CLI::App& command, RendererOptions& options);
 // Threads, width, lanes, instruction set and roulette depth. Throws UsageError, Error.
 RenderSettings render_settings(const RendererOptions& options);
 
+// Reads the scene, prints what of it was not understood, and sets the resolution if one was given.
+// Throws UsageError, Error.
+SceneDescription read_described(const std::string& scene, const RendererOptions& options);
+
+// "0,0.5,1": numbers from 0 to 1, ascending after sorting; duplicates go. Throws UsageError.
+std::vector<float> parse_weights(std::string_view text);
+
 // "WxH" in pixels. Throws UsageError.
 glm::ivec2 parse_resolution(std::string_view text);
 

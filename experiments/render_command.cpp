@@ -1,6 +1,5 @@
 // lockstep render: one image of one scene.
 #include "core/error.h"
-#include "core/read_scene.h"
 #include "experiments/commands.h"
 #include "experiments/options.h"
 #include "experiments/output_file.h"
@@ -64,19 +63,6 @@ void report_done(const RenderOptions& options, const RenderStats& stats) {
       options.output, stats.spp, stats.wall_seconds, stats.cpu_seconds, stats.threads, rate);
 }
 
-SceneDescription read_described(const RenderOptions& options) {
-  SceneDescription description = read_scene(options.scene);
-  for (const std::string& warning : description.warnings) {
-    fmt::print(stderr, "lockstep: warning: {}\n", warning);
-  }
-  if (!options.renderer.resolution.empty()) {
-    const glm::ivec2 size = parse_resolution(options.renderer.resolution);
-    description.film.width = size.x;
-    description.film.height = size.y;
-  }
-  return description;
-}
-
 RenderSettings settings_for(const RenderOptions& options, RenderSettings settings,
                             const RenderDefaults& defaults) {
   settings.seed = options.seed;
@@ -107,7 +93,7 @@ void run_render(const RenderOptions& options) {
   RenderSettings settings = render_settings(options.renderer);
   check_outputs(options, sampler);
 
-  const Scene scene(read_described(options), embree_isa(settings.isa));
+  const Scene scene(read_described(options.scene, options.renderer), embree_isa(settings.isa));
   settings = settings_for(options, settings, scene.description().defaults);
   ProgressMeter meter(options.quiet);
   const auto show = [&](double fraction) {

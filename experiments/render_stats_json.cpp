@@ -24,8 +24,18 @@ nlohmann::ordered_json traversal_json(const RenderStats& stats) {
 
 nlohmann::ordered_json stages_json(const RenderStats& stats) {
   nlohmann::ordered_json json;
-  for (int stage = 0; stage < stages; ++stage) json[stage_names[stage]] = stats.stage_seconds[stage];
+  for (int stage = 0; stage < stages; ++stage)
+    json[stage_names[stage]] = stats.stage_seconds[stage];
   return json;
+}
+
+// What is left of the peak is the program itself, its libraries and working memory.
+nlohmann::ordered_json memory_json(const Scene& scene, const RenderStats& stats) {
+  const SceneMemory memory = scene.memory();
+  return {{"geometry", memory.geometry},
+          {"embree", memory.embree},
+          {"embree_peak", memory.embree_peak},
+          {"film", stats.film_bytes}};
 }
 
 }  // namespace
@@ -63,6 +73,7 @@ nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Sc
           {"nonfinite", stats.nonfinite},
           {"features", feature_names(scene.features())},
           {"left_out", feature_names(all_features & ~scene.features())},
+          {"memory_bytes", memory_json(scene, stats)},
           {"peak_memory_bytes", peak_memory_bytes()},
           {"version", version()}};
 }

@@ -9,11 +9,12 @@
 
 namespace lockstep {
 
-#define LOCKSTEP_KERNELS_OF(isa, apply)                                                       \
+#define LOCKSTEP_KERNELS_OF(isa, apply)                                                            \
   apply(kernel_##isa##_1) apply(kernel_##isa##_4) apply(kernel_##isa##_8) apply(kernel_##isa##_16) \
       apply(kernel_##isa##_quad_lit) apply(kernel_##isa##_sky_lit) apply(kernel_##isa##_interior)
-#define LOCKSTEP_KERNELS(apply) \
-  LOCKSTEP_KERNELS_OF(sse4, apply) LOCKSTEP_KERNELS_OF(avx2, apply) LOCKSTEP_KERNELS_OF(avx512, apply)
+#define LOCKSTEP_KERNELS(apply)    \
+  LOCKSTEP_KERNELS_OF(sse4, apply) \
+  LOCKSTEP_KERNELS_OF(avx2, apply) LOCKSTEP_KERNELS_OF(avx512, apply)
 
 #define LOCKSTEP_DECLARE(kernel) extern const Kernel kernel;
 LOCKSTEP_KERNELS(LOCKSTEP_DECLARE)

@@ -19,7 +19,8 @@ class MeasuredChoice {
 
   int chosen() const { return chosen_; }
 
-  // Call for each piece of work large enough to be divided: what to give half of it to, if anything.
+  // Call for each piece of work large enough to be divided: what to give half of it to, if
+  // anything.
   std::optional<int> trial();
 
   // The time of the trial's half over that of the chosen one's. Ratios that are no numbers are

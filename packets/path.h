@@ -38,7 +38,8 @@ void add_emission(const ShadeContext& c) {
     }
     if (!has_area_lights<F>(scene)) continue;
     const Mask<W> hit = active & !(geometry < I(0));
-    const I first = gather(scene.geometry.rows + 2, select(hit, geometry, I(0)) * I(geometry_stride));
+    const I first =
+        gather(scene.geometry.rows + 2, select(hit, geometry, I(0)) * I(geometry_stride));
     const Mask<W> emitting = hit & !(first < I(0));
     if (none(emitting)) continue;
     const I entry = select(emitting, first + load<I>(hits.primitive + i), I(0));
@@ -59,7 +60,8 @@ void queue_hits(const ShadeContext& c) {
   const RayQueue& rays = c.rays();
   const HitArray& hits = c.wave->hits;
   ShadeQueue& out = c.wave->hits_to_shade;
-  const bool other_kinds = (scene.features & F & material_features & ~bit(material_feature(K))) != 0;
+  const bool other_kinds =
+      (scene.features & F & material_features & ~bit(material_feature(K))) != 0;
   int n = 0;
   for (int i = 0; i < rays.count; i += W) {
     const I geometry = load<I>(hits.geometry + i);

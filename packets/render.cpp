@@ -62,8 +62,9 @@ RayCounts ray_counts(const TileCounts& counts) {
 }
 
 LaneLayout layout_of_most_paths(const TileCounts& counts) {
-  const auto* most = std::max_element(std::begin(counts.layouts), std::end(counts.layouts),
-                                      [](const auto& a, const auto& b) { return a.paths < b.paths; });
+  const auto* most =
+      std::max_element(std::begin(counts.layouts), std::end(counts.layouts),
+                       [](const auto& a, const auto& b) { return a.paths < b.paths; });
   return most->lanes;
 }
 
@@ -216,6 +217,8 @@ class Renderer {
     std::memcpy(s.traced, counts.traced, sizeof s.traced);
     s.packets = counts.packets;
     s.width = pass_.kernel->width;
+    s.film_bytes = (state_.image.sums.size() + state_.pilot.sums.size()) * sizeof(double) +
+                   state_.image.sums.size() / 4 * 3 * sizeof(float);
     if (counts.lanes > 0) s.lanes_active = double(counts.active_lanes) / double(counts.lanes);
     s.nonfinite = counts.nonfinite;
     s.bad_samples.assign(counts.bad,

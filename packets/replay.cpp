@@ -24,9 +24,8 @@ bool is_measured(int mode) {
 std::vector<double> replay_once(const Scene& scene, const Kernel& kernel, const RayLog& log,
                                 int mode, const std::vector<std::size_t>& class_of_queue,
                                 std::size_t classes) {
-  TraversalPolicy policy(
-      mode == policy_replay ? std::nullopt : std::optional(traversal_mode(mode)),
-      default_width(kernel.isa));
+  TraversalPolicy policy(mode == policy_replay ? std::nullopt : std::optional(traversal_mode(mode)),
+                         default_width(kernel.isa));
   std::vector<std::uint64_t> ticks(log.queues.size());
   const double cpu = thread_cpu_seconds();
   const std::uint64_t start = read_ticks();

@@ -1,6 +1,6 @@
 // Traversal on its own: the rays of a render traced again in every mode. It tells what the fastest
-// possible render would cost, how good the policy's choices are, and, by single rays against packets
-// on the same rays, how much of a gain is locality and how much is SIMD.
+// possible render would cost, how good the policy's choices are, and, by single rays against
+// packets on the same rays, how much of a gain is locality and how much is SIMD.
 #pragma once
 
 #include "packets/render.h"
@@ -32,8 +32,8 @@ struct Replay {
   double render_seconds = 0.0;  // CPU time of the whole render
   std::vector<ReplayClass> classes;
 
-  double seconds(int mode) const;      // all rays in one mode
-  int best_mode() const;               // the one fixed mode that is fastest for all rays together
+  double seconds(int mode) const;        // all rays in one mode
+  int best_mode() const;                 // the one fixed mode that is fastest for all rays together
   double best_by_class_seconds() const;  // each class in its fastest fixed mode
 };
 

@@ -82,9 +82,9 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
   const I light = needs<F>(*c.scene, Feature::LightChoice)
                       ? choose_light(c.scene->lights, value(queue.u, Purpose::Choice))
                       : I(0);
-  const LightSample<V> s = sample_light<V, F>(
-      *c.scene, light, surface.origin, surface.frame,
-      Vec2<V>(value(queue.u, Purpose::Light), value(queue.v, Purpose::Light)));
+  const LightSample<V> s =
+      sample_light<V, F>(*c.scene, light, surface.origin, surface.frame,
+                         Vec2<V>(value(queue.u, Purpose::Light), value(queue.v, Purpose::Light)));
   const Vec3<V> wi = surface.frame.to_local(s.wi);
   MaskOf<V> lit = active & (s.pdf > V(0.0f)) & (wi.z > V(0.0f)) &
                   (dot(surface.geometric_normal, s.wi) > V(0.0f));

@@ -84,8 +84,7 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
   Vec3<V> normal = cross<V>(corners.b - corners.a, corners.c - corners.a);
   if (needs<F>(scene, Feature::Spheres)) {
     const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
-    const Vec3<V> on_ray =
-        fma(load<V>(queue.distance + i), direction, load3<V>(queue.origin, i));
+    const Vec3<V> on_ray = fma(load<V>(queue.distance + i), direction, load3<V>(queue.origin, i));
     refine_sphere(scene, sphere, load<I>(queue.geometry + i), on_ray, hit, normal);
   }
 

@@ -245,8 +245,7 @@ Mask<W> may_tie(const SceneData& scene, const HitArray& hits, int i, Mask<W> hit
   return tie | (hit & (load<I>(coincident) != I(0)));
 }
 
-void settle_ties(const SceneData& scene, const RayQueue& rays, int begin, int end,
-                 HitArray& hits) {
+void settle_ties(const SceneData& scene, const RayQueue& rays, int begin, int end, HitArray& hits) {
   constexpr int W = native_lanes;
   for (int i = begin; i < end; i += W) {
     const Mask<W> hit = lanes_below<W>(i, end) & !(load<Int<W>>(hits.geometry + i) < Int<W>(0));

@@ -23,9 +23,7 @@ struct TraversalMode {
 inline constexpr int traversal_modes = 12;
 
 constexpr int index(TraversalMode mode) { return 2 * int(mode.packets) + int(mode.coherent); }
-constexpr TraversalMode traversal_mode(int index) {
-  return {Packets(index / 2), index % 2 == 1};
-}
+constexpr TraversalMode traversal_mode(int index) { return {Packets(index / 2), index % 2 == 1}; }
 
 // Lanes of a packet; 1 for single rays and their streams.
 constexpr int lanes(Packets packets) {

@@ -9,11 +9,11 @@ constexpr int smallest_queue = 256;  // rays; a trial on fewer says little
 
 // The order of trials: first what is often best.
 constexpr std::uint8_t order[] = {
-    std::uint8_t(index({Packets::Eight, true})),     std::uint8_t(index({Packets::Sixteen, true})),
-    std::uint8_t(index({Packets::Eight, false})),    std::uint8_t(index({Packets::StreamNM, true})),
-    std::uint8_t(index({Packets::Sixteen, false})),  std::uint8_t(index({Packets::Stream1M, false})),
-    std::uint8_t(index({Packets::Four, false})),     std::uint8_t(index({Packets::StreamNM, false})),
-    std::uint8_t(index({Packets::Single, false})),   std::uint8_t(index({Packets::Four, true})),
+    std::uint8_t(index({Packets::Eight, true})),    std::uint8_t(index({Packets::Sixteen, true})),
+    std::uint8_t(index({Packets::Eight, false})),   std::uint8_t(index({Packets::StreamNM, true})),
+    std::uint8_t(index({Packets::Sixteen, false})), std::uint8_t(index({Packets::Stream1M, false})),
+    std::uint8_t(index({Packets::Four, false})),    std::uint8_t(index({Packets::StreamNM, false})),
+    std::uint8_t(index({Packets::Single, false})),  std::uint8_t(index({Packets::Four, true})),
     std::uint8_t(index({Packets::Stream1M, true}))};
 
 Packets packets_of(int width) {

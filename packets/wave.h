@@ -65,9 +65,9 @@ struct alignas(64) ShadowQueue {
 // The hits on one kind of material, side by side, and the sample values of their paths by Purpose.
 struct alignas(64) ShadeQueue {
   int count = 0;
-  Float3Array direction;          // of the ray
-  Float3Array origin;             // of the ray, and
-  FloatArray distance;            // the hit's: only where the scene has spheres
+  Float3Array direction;  // of the ray
+  Float3Array origin;     // of the ray, and
+  FloatArray distance;    // the hit's: only where the scene has spheres
   Float3Array throughput;
   FloatArray barycentric_u, barycentric_v;
   IntArray geometry, primitive, path;

@@ -68,7 +68,8 @@ LOCKSTEP_INLINE void fill_shared_sequence(const SamplerState& state, const Sampl
   for (int i = 0; i < batch.count; i += W) {
     const UInt<W> sample = load<UInt<W>>(batch.sample + i);
     // Lanes behind the last path may hold anything.
-    const Int<W> k = as_int(sample - UInt<W>(batch.first_sample)) & Int<W>(max_samples_per_batch - 1);
+    const Int<W> k =
+        as_int(sample - UInt<W>(batch.first_sample)) & Int<W>(max_samples_per_batch - 1);
     Vec2<V> point(gather(shared_u, k), gather(shared_v, k));
     if (perturbed) {
       const UInt<W> pixel = load<UInt<W>>(batch.pixel + i);

@@ -8,11 +8,14 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <random>
+#include <sstream>
 
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
@@ -67,6 +70,46 @@ std::string error_of(Action action) {
 void expect_one_line_naming(const std::string& message, const std::string& file) {
   EXPECT_NE(message.find(file), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+template <typename T>
+std::string bytes_of(T value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(T)};
+}
+
+struct RawChannel {
+  std::string name;
+  int32_t type = 2;  // 0: whole numbers, 1: half floats, 2: floats
+  std::string row;
+};
+
+// An uncompressed EXR file of one row of `width` pixels, put together byte by byte; its data window
+// begins at (-1, 7).
+std::string raw_exr(int width, const std::vector<RawChannel>& channels) {
+  const auto attribute = [](const char* name, const char* type, const std::string& value) {
+    return name + std::string(1, '\0') + type + std::string(1, '\0') +
+           bytes_of(int32_t(value.size())) + value;
+  };
+  std::string list, row;
+  for (const RawChannel& c : channels) {
+    list += c.name + '\0' + bytes_of(c.type) + bytes_of(int32_t(0)) + bytes_of(int32_t(1)) +
+            bytes_of(int32_t(1));
+    row += c.row;
+  }
+  const std::string window = bytes_of(int32_t(-1)) + bytes_of(int32_t(7)) +
+                             bytes_of(int32_t(width - 2)) + bytes_of(int32_t(7));
+  std::string file = bytes_of(int32_t(20000630)) + bytes_of(int32_t(2)) +
+                     attribute("channels", "chlist", list + '\0') +
+                     attribute("compression", "compression", bytes_of('\0')) +
+                     attribute("dataWindow", "box2i", window) +
+                     attribute("displayWindow", "box2i", window) +
+                     attribute("lineOrder", "lineOrder", bytes_of('\0')) +
+                     attribute("lockstep:sampler", "string", "owen") +
+                     attribute("pixelAspectRatio", "float", bytes_of(1.0f)) +
+                     attribute("screenWindowCenter", "v2f", bytes_of(0.0f) + bytes_of(0.0f)) +
+                     attribute("screenWindowWidth", "float", bytes_of(1.0f)) + '\0';
+  file += bytes_of(uint64_t(file.size() + 8));
+  return file + bytes_of(int32_t(7)) + bytes_of(int32_t(row.size())) + row;
 }
 
 TEST_F(ImageFiles, ExrKeepsEveryBit) {
@@ -155,6 +198,33 @@ TEST_F(ImageFiles, OneChannelComesBackGrey) {
   }
 }
 
+TEST_F(ImageFiles, ExrOfOtherProgramsIsRead) {
+  const auto half = [](uint16_t a, uint16_t b) { return bytes_of(a) + bytes_of(b); };
+  const auto full = [](float a, float b) { return bytes_of(a) + bytes_of(b); };
+  const auto read = [&](const std::vector<RawChannel>& channels) {
+    // The content says that this is EXR, not the name.
+    std::ofstream(path("raw.png"), std::ios::binary) << raw_exr(2, channels);
+    const Image image = read_image(path("raw.png"));
+    EXPECT_EQ(image.width, 2);
+    EXPECT_EQ(image.height, 1);
+    return image.pixels;
+  };
+  using Pixels = std::vector<float>;
+  EXPECT_EQ(read({{"A", 1, half(0, 0)},
+                  {"B", 1, half(0x3c00, 0xc000)},
+                  {"G", 0, bytes_of(uint32_t(0)) + bytes_of(UINT32_MAX)},
+                  {"R", 2, full(0.1f, 1e30f)}}),
+            (Pixels{0.1f, 0.0f, 1.0f, 1e30f, 1.0f, -2.0f}));
+  EXPECT_EQ(read_metadata(path("raw.png")), (Metadata{{"sampler", "owen"}}));
+  EXPECT_EQ(read({{"A", 2, full(9, 9)}, {"Y", 2, full(3, 4)}}), (Pixels{3, 3, 3, 4, 4, 4}));
+  EXPECT_EQ(read({{"view.A", 2, full(9, 9)},
+                  {"view.B", 2, full(1, 2)},
+                  {"view.G", 2, full(3, 4)},
+                  {"view.R", 2, full(5, 6)},
+                  {"wide.R", 2, full(7, 8)}}),
+            (Pixels{5, 3, 1, 6, 4, 2}));
+}
+
 TEST_F(ImageFiles, AlphaIsDroppedAndColourKept) {
   Image image(2, 1, 4);
   image.pixels = {0.5f, 0.25f, 1.0f, 0.0f, 0.5f, 0.25f, 1.0f, 1.0f};
@@ -193,6 +263,38 @@ TEST_F(ImageFiles, UnreadableFilesAreErrors) {
     cut_in_half(name);
     expect_one_line_naming(read(name), name);
   }
+}
+
+TEST_F(ImageFiles, VastDamagedHeaderIsAnError) {
+  std::ofstream(path("vast.exr"), std::ios::binary) << raw_exr(1 << 29, {{"Y", 2, "few"}});
+  expect_one_line_naming(error_of([&] { read_image(path("vast.exr")); }), "vast.exr");
+}
+
+// The module of other formats is looked for beside the program: a copy of this one elsewhere has
+// none, and must still do all that it does with EXR files.
+TEST_F(ImageFiles, OnlyOtherFormatsNeedTheModule) {
+  const fs::path self = fs::read_symlink("/proc/self/exe");
+  if (fs::exists(self.parent_path() / "lockstep_image_formats.so")) {
+    fs::copy_file(self, path("copy"));
+    const std::string run =
+        path("copy") + " --gtest_filter=ImageFiles.OnlyOtherFormatsNeedTheModule";
+    EXPECT_EQ(std::system(run.c_str()), 0);
+    return;
+  }
+  write_image(path("a.exr"), random_image(4, 4, 3), {{"seed", "1"}});
+  EXPECT_EQ(read_image(path("a.exr")).width, 4);
+  EXPECT_EQ(read_metadata(path("a.exr")), (Metadata{{"seed", "1"}}));
+  std::ofstream(path("b.png")) << "any";
+  for (const std::string& message : {error_of([&] { write_image(path("b.png"), Image(4, 4)); }),
+                                     error_of([&] { read_image(path("b.png")); }),
+                                     error_of([&] { can_write_image("b.png"); })}) {
+    expect_one_line_naming(message, "b.png");
+    EXPECT_NE(message.find("lockstep_image_formats.so"), std::string::npos) << message;
+  }
+  std::stringstream loaded;
+  loaded << std::ifstream("/proc/self/maps").rdbuf();
+  EXPECT_NE(loaded.str().find("libOpenEXR"), std::string::npos);
+  EXPECT_EQ(loaded.str().find("libOpenImageIO"), std::string::npos);
 }
 
 TEST_F(ImageFiles, UnwritablePlacesAreErrorsAndLeaveNothing) {

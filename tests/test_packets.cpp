@@ -1,6 +1,7 @@
 // The renderer as a whole: the same bytes for every width, thread count, lane layout and resume
 // point; what it counts; how it stops.
 #include "core/error.h"
+#include "packets/pass.h"
 #include "tests/t_scenes.h"
 
 #include <gtest/gtest.h>
@@ -32,10 +33,6 @@ RenderSettings settings_of(int spp, int depth = 4) {
   return s;
 }
 
-void use_lanes(RenderSettings& s, std::string_view layout) {
-  if (layout != "auto") s.lanes = parse_lane_layout(layout);
-}
-
 class BuiltinScenes : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(BuiltinScenes, GiveTheSameBytesForEveryWidthLayoutAndThreadCount) {
@@ -55,7 +52,7 @@ TEST_P(BuiltinScenes, GiveTheSameBytesForEveryWidthLayoutAndThreadCount) {
         for (const char* layout : {"4x4x1", "2x2x4", "1x1x16", "8x2x1", "16x16x1"}) {
           s.width = width;
           s.threads = threads[n++ % 3];
-          use_lanes(s, layout);
+          s.lanes = parse_lane_layout(layout);
           const RenderResult result = render(scene, spec, s);
           EXPECT_TRUE(same_bytes(result.image, expected.image))
               << name(isa) << ' ' << sampler << " width " << width << " lanes " << layout
@@ -75,6 +72,42 @@ TEST_P(BuiltinScenes, GiveTheSameBytesForEveryWidthLayoutAndThreadCount) {
 INSTANTIATE_TEST_SUITE_P(All, BuiltinScenes,
                          testing::Range<std::size_t>(0, builtin_scenes().size()),
                          [](const auto& p) { return std::string(builtin_scenes()[p.param].name); });
+
+// Passes of 64 samples, long enough for the policy to try one layout against another.
+TEST(Render, MeasuredLayoutsGiveTheBytesOfAFixedOne) {
+  const Scene scene = small_cornell();
+  for (const char* sampler : {"owen", "rcs"}) {
+    const SamplerSpec spec = parse_sampler(sampler);
+    RenderSettings s = settings_of(64);
+    s.lanes = LaneLayout{4, 4, 1};
+    const Image expected = render(scene, spec, s).image;
+    s.lanes.reset();
+    for (const int threads : {1, 2, 7}) {
+      s.threads = threads;
+      EXPECT_TRUE(same_bytes(render(scene, spec, s).image, expected)) << sampler << ' ' << threads;
+    }
+  }
+}
+
+// Guards the test above.
+TEST(Render, SixtyFourSamplesAreEnoughToTryLayouts) {
+  const Scene scene = small_cornell();
+  const SamplerState sampler;
+  const Kernel& kernel = find_kernel(choose_isa(), 0);
+  Workers workers(TraversalPolicy({}, kernel.width), LayoutPolicy({}));
+  Pass pass;
+  pass.kernel = &kernel, pass.scene = &scene.data(), pass.sampler = &sampler;
+  pass.workers = &workers;
+  pass.samples = 64;
+  Film film(70, 50);
+  PassTotals totals;
+  EXPECT_TRUE(run_pass(pass, film, totals, [](double) { return true; }));
+  std::uint64_t paths = 0;
+  for (const LayoutCount& layout : totals.counts.layouts) paths += layout.paths;
+  EXPECT_EQ(paths, 70u * 50u * 64u);
+  EXPECT_EQ(totals.counts.layouts[0].lanes, (LaneLayout{4, 4, 1}));
+  EXPECT_GT(totals.counts.layouts[1].paths, 0u);
+}
 
 TEST(Render, EverySettingThatIsPartOfTheImageChangesIt) {
   const Scene scene = small_cornell();
@@ -102,7 +135,7 @@ TEST(Render, ImagesSmallerThanATileWork) {
     EXPECT_EQ(one.height, height);
     for (const char* layout : {"4x4x1", "1x1x16"}) {
       s.width = 16;
-      use_lanes(s, layout);
+      s.lanes = parse_lane_layout(layout);
       EXPECT_TRUE(same_bytes(render(scene, parse_sampler("rcs"), s).image, one));
     }
   }
@@ -129,6 +162,7 @@ TEST(RenderStats, CountWhatWasTraced) {
     for (const int width : {1, 4, 8, 16}) {
       RenderSettings s = settings_of(6);
       s.width = width;
+      if (width == 1) s.traversal = TraversalMode{Packets::Single, false};
       const RenderResult r = render(scene, parse_sampler(sampler), s);
       EXPECT_EQ(r.stats.paths, 70u * 50u * 6u);
       EXPECT_EQ(r.stats.rays.camera, r.stats.paths);
@@ -138,8 +172,12 @@ TEST(RenderStats, CountWhatWasTraced) {
       EXPECT_LE(r.stats.rays.shadow, 4u * r.stats.paths);
       EXPECT_GT(r.stats.lanes_active, 0.5);
       EXPECT_LE(r.stats.lanes_active, 1.0);
+      const RayCounts& rays = r.stats.rays;
       if (width == 1) {
         EXPECT_EQ(r.stats.lanes_active, 1.0);
+        EXPECT_EQ(r.stats.packets, rays.camera + rays.bounce + rays.shadow);
+      } else {
+        EXPECT_LT(r.stats.packets, rays.camera + rays.bounce + rays.shadow);
       }
       EXPECT_EQ(r.stats.width, width);
       EXPECT_EQ(r.stats.threads, 2);
@@ -425,9 +463,9 @@ TEST(LaneLayout, IsParsedOrRefused) {
   EXPECT_EQ(lanes.x, 2);
   EXPECT_EQ(lanes.y, 4);
   EXPECT_EQ(lanes.samples, 8);
-  EXPECT_EQ(parse_lane_layout("auto").x, 4);
-  for (const char* text : {"", "4", "4x4", "4x4x", "x4x1", "3x4x1", "4x4x1x1", "32x1x1", "-4x4x1",
-                           "0x4x1", "16x16x2", "1x1x512", "4X4X1", "axbxc"}) {
+  EXPECT_EQ(to_string(lanes), "2x4x8");
+  for (const char* text : {"", "auto", "4", "4x4", "4x4x", "x4x1", "3x4x1", "4x4x1x1", "32x1x1",
+                           "-4x4x1", "0x4x1", "16x16x2", "1x1x512", "4X4X1", "axbxc"}) {
     EXPECT_THROW(parse_lane_layout(text), UsageError) << text;
   }
 }

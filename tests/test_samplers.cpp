@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 namespace lockstep {
@@ -30,19 +29,19 @@ struct Values {
   bool operator==(const Values&) const = default;
 };
 
-// Asks for the paths in the order of `path` (all of them, if empty) in one batch.
+// Asks for the couples in the order of `path` (all of them, if empty) in one batch.
 Values draw_batch(const Kernel& kernel, const SamplerState& state, const Couples& c, int pair,
-                  std::vector<std::int32_t> path = {}) {
-  if (path.empty()) {
-    path.resize(c.size());
-    std::iota(path.begin(), path.end(), 0);
-  }
-  const auto n = path.size();
+                  const std::vector<std::int32_t>& path = {}) {
+  Couples batched = path.empty() ? c : Couples{};
+  for (const std::int32_t i : path) batched.add(c.pixel[size_t(i)], c.sample[size_t(i)]);
+  const auto n = batched.size();
   const auto [low, high] = std::minmax_element(c.sample.begin(), c.sample.end());
-  path.resize(n + 16, path.back());
+  // Behind the end: a pixel that exists, and any sample.
+  batched.pixel.resize(n + 16, batched.pixel.back());
+  batched.sample.resize(n + 16, 0xffffffffu);
   Values values{std::vector<float>(n + 16), std::vector<float>(n + 16)};
-  const SampleBatch batch{path.data(),     int(n), c.pixel.data(),
-                          c.sample.data(), *low,   int(*high - *low + 1)};
+  const SampleBatch batch{batched.pixel.data(), batched.sample.data(), int(n), *low,
+                          int(*high - *low + 1)};
   EXPECT_LE(batch.samples, max_samples_per_batch);
   kernel.fill_pair(state, batch, pair, values.u.data(), values.v.data());
   values.u.resize(n);

@@ -242,41 +242,6 @@ TEST_P(Simd, Gather) {
       "gather backwards", [&](auto i) { return as_uint(gather(middle, -i)); }, index);
 }
 
-template <class T, int W>
-void check_compress_store(const std::vector<T>& values, std::uint32_t pattern) {
-  std::int32_t members[W];
-  std::vector<T> expected;
-  for (int k = 0; k < W; ++k) {
-    members[k] = std::int32_t(pattern >> k & 1u);
-    if (members[k]) expected.push_back(values[size_t(k)]);
-  }
-  const Mask<W> m = load<Int<W>>(members) == Int<W>(1);
-  std::vector<T> out(W + 1, T(42));
-  const int n = compress_store(out.data(), load<Lanes<T, W>>(values.data()), m);
-  ASSERT_EQ(n, int(expected.size()));
-  ASSERT_EQ(out[W], T(42));
-  for (int k = 0; k < n; ++k) ASSERT_TRUE(same_value(out[size_t(k)], expected[size_t(k)]));
-}
-
-TEST_P(Simd, CompressStoreKeepsOrder) {
-  const auto words = test_bits(8);
-  const auto floats = test_values(9);
-  const std::vector<std::int32_t> signed_words(words.begin(), words.end());
-  for_each_width([&](auto width) {
-    constexpr int W = width();
-    for (std::uint32_t pattern = 0; pattern < 1u << W; pattern += (W == 16 ? 13u : 1u)) {
-      check_compress_store<float, W>(floats, pattern);
-      check_compress_store<std::int32_t, W>(signed_words, pattern);
-      check_compress_store<std::uint32_t, W>(words, pattern);
-    }
-    check_compress_store<float, W>(floats, (1u << W) - 1u);
-  });
-  float one = 0.0f;
-  EXPECT_EQ(compress_store(&one, 3.0f, true), 1);
-  EXPECT_EQ(one, 3.0f);
-  EXPECT_EQ(compress_store(&one, 4.0f, false), 0);
-}
-
 TEST(SimdScalar, OperationsAreWhatTheirNamesSay) {
   EXPECT_EQ(min(1.0f, not_a_number) != min(1.0f, not_a_number), true);
   EXPECT_EQ(min(not_a_number, 1.0f), 1.0f);
