@@ -206,16 +206,37 @@ struct LaneElement<Lanes<T, W>> {
 template <class V>
 using ElementOf = typename LaneElement<V>::type;
 
+// A register's worth of elements anywhere in memory. (Where lanes are copied with memcpy, g++ 12
+// moves 32-byte integers in pieces that stall on their way through the stack.)
+template <class T, int W>
+struct MemoryVector {
+  typedef T type __attribute__((vector_size(sizeof(T) * W), aligned(alignof(T)), may_alias));
+};
+
 // width_of<V> consecutive elements; no alignment is asked for.
 template <class V>
 LOCKSTEP_INLINE V load(const ElementOf<V>* p) {
-  V v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
+  constexpr int W = width_of<V>;
+  if constexpr (W == 1) {
+    return *p;
+  } else if constexpr (V::native) {
+    return V::from(*reinterpret_cast<const typename MemoryVector<ElementOf<V>, W>::type*>(p));
+  } else {
+    using Half = typename V::Half;
+    return V::from({load<Half>(p), load<Half>(p + W / 2)});
+  }
 }
 template <class V>
 LOCKSTEP_INLINE void store(ElementOf<V>* p, V v) {
-  std::memcpy(p, &v, sizeof v);
+  constexpr int W = width_of<V>;
+  if constexpr (W == 1) {
+    *p = v;
+  } else if constexpr (V::native) {
+    *reinterpret_cast<typename MemoryVector<ElementOf<V>, W>::type*>(p) = v.s;
+  } else {
+    store(p, v.s.lo);
+    store(p + W / 2, v.s.hi);
+  }
 }
 
 // 0, 1, 2, ... in the lanes.

@@ -111,6 +111,26 @@ LOCKSTEP_INLINE Rows<Lanes<float, W>> gather_float_rows(const float* base,
   }
 }
 
+// Writes each four lanes of r to out[0], out[4], out[8], ...
+template <int W, class R>
+LOCKSTEP_INLINE void split(R r, __m128* out) {
+  if constexpr (W == 4) out[0] = (__m128)r;
+#if defined(__AVX__)
+  if constexpr (W == 8) {
+    out[0] = _mm256_castps256_ps128((__m256)r);
+    out[4] = _mm256_extractf128_ps((__m256)r, 1);
+  }
+#endif
+#if defined(__AVX512F__)
+  if constexpr (W == 16) {
+    out[0] = _mm512_castps512_ps128((__m512)r);
+    out[4] = _mm512_extractf32x4_ps((__m512)r, 1);
+    out[8] = _mm512_extractf32x4_ps((__m512)r, 2);
+    out[12] = _mm512_extractf32x4_ps((__m512)r, 3);
+  }
+#endif
+}
+
 // Writes lane i's row to out[i].
 template <int W>
 LOCKSTEP_INLINE void store_rows(__m128* out, const Rows<Lanes<float, W>>& rows) {
@@ -118,12 +138,10 @@ LOCKSTEP_INLINE void store_rows(__m128* out, const Rows<Lanes<float, W>>& rows) 
   if constexpr (V::native) {
     using R = typename V::Storage;
     const Square<R> s = Square<R>{rows.x.s, rows.y.s, rows.z.s, rows.w.s}.transposed();
-    const R registers[4] = {s.a, s.b, s.c, s.d};
-    for (int j = 0; j < 4; ++j) {
-      __m128 parts[W / 4];
-      std::memcpy(parts, &registers[j], sizeof parts);
-      for (int group = 0; group < W / 4; ++group) out[4 * group + j] = parts[group];
-    }
+    split<W>(s.a, out);
+    split<W>(s.b, out + 1);
+    split<W>(s.c, out + 2);
+    split<W>(s.d, out + 3);
   } else {
     store_rows<W / 2>(out, {rows.x.s.lo, rows.y.s.lo, rows.z.s.lo, rows.w.s.lo});
     store_rows<W / 2>(out + W / 2, {rows.x.s.hi, rows.y.s.hi, rows.z.s.hi, rows.w.s.hi});

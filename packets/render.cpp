@@ -252,6 +252,9 @@ RenderResult render(const Scene& scene, const SamplerSpec& sampler, const Render
   if (settings.depth < 1 || settings.depth > max_depth) {
     throw UsageError(fmt::format("depth must lie in 1..{}", max_depth));
   }
+  if (settings.log && settings.threads != 1) {
+    throw UsageError("rays can be kept with one thread only");
+  }
   return Renderer(scene, sampler, settings, progress).run();
 }
 

@@ -71,6 +71,15 @@ LOCKSTEP_INLINE void keep_hits(const RTCRayHitNt<P>& packet, HitArray& hits, int
   std::memcpy(hits.v + i, packet.hit.v, sizeof packet.hit.v);
 }
 
+// Lanes behind the queue's end hold anything; Embree splits wide packets and may look at all lanes
+// of a part, so they get the first ray.
+template <int P>
+void repeat_first(RTCRayNt<P>& ray, int rays) {
+  for (auto* field : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z, ray.tfar}) {
+    std::fill(field + rays, field + P, field[0]);
+  }
+}
+
 // -1 in the lanes that carry a ray, as Embree wants it.
 template <int P>
 struct alignas(64) Valid {
@@ -112,6 +121,7 @@ void closest_packets(RTCScene scene, bool coherent, const RayQueue& rays, int be
     if (end - i >= P) {
       intersect<P>(scene, &context, all, &packet);
     } else {
+      repeat_first(packet.ray, end - i);
       intersect<P>(scene, &context, Valid<P>(end - i), &packet);
     }
     keep_hits(packet, hits, i);
@@ -129,6 +139,7 @@ void occluded_packets(RTCScene scene, bool coherent, ShadowQueue& rays, int begi
     if (end - i >= P) {
       occlude<P>(scene, &context, all, &packet);
     } else {
+      repeat_first(packet, end - i);
       occlude<P>(scene, &context, Valid<P>(end - i), &packet);
     }
     std::memcpy(rays.distance + i, packet.tfar, sizeof packet.tfar);

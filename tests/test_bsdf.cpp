@@ -97,12 +97,12 @@ auto with_bsdf(MaterialKind kind, const MaterialTable& table, I index, F f) {
 }
 
 BsdfValue<float> eval_case(const MaterialCase& c, glm::vec3 wo, glm::vec3 wi) {
-  const MaterialTable table{nullptr, c.row.data()};
+  const MaterialTable table{c.row.data()};
   return with_bsdf(c.kind, table, 0, [&](const auto& bsdf) { return eval(bsdf, wo, wi); });
 }
 
 BsdfSample<float> sample_case(const MaterialCase& c, glm::vec3 wo, glm::vec3 u) {
-  const MaterialTable table{nullptr, c.row.data()};
+  const MaterialTable table{c.row.data()};
   return with_bsdf(c.kind, table, 0, [&](const auto& bsdf) {
     return sample(bsdf, wo, u.z, {u.x, u.y});
   });
@@ -298,7 +298,7 @@ void expect_same_bits_at_width(MaterialKind kind) {
     if (c.kind == kind) of_kind.push_back(std::int32_t(rows.size()) / material_stride);
     rows.insert(rows.end(), c.row.begin(), c.row.end());
   }
-  const MaterialTable table{nullptr, rows.data()};
+  const MaterialTable table{rows.data()};
   for (std::uint32_t first = 0; first < 8192; first += W) {
     std::int32_t index[W];
     float u[W], v[W], lobe[W];

@@ -94,7 +94,6 @@ struct LightScene {
   explicit LightScene(const std::vector<LightCase>& lights) {
     for (const LightCase& c : lights) append(c);
     data.lights = {int(lights.size()), rows.data(), cdf.data()};
-    data.spheres = true;
   }
 
  private:
@@ -453,7 +452,7 @@ TEST(ChooseLight, FindsTheIntervalThatHoldsU) {
   for (const auto& probabilities : sets) {
     const std::vector<float> cdf = cumulative(probabilities);
     const int n = int(probabilities.size());
-    const LightTable table{n, nullptr, nullptr, cdf.data()};
+    const LightTable table{n, nullptr, cdf.data()};
     std::vector<float> values = {0.0f, 0x1p-24f, one_minus_epsilon};
     for (const float edge : cdf) {
       values.push_back(std::min(edge, one_minus_epsilon));
