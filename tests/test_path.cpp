@@ -344,7 +344,7 @@ TEST(Lights, AreChosenWithTheProbabilityTheyState) {
   const LightTable& lights = scene.data().lights;
   ASSERT_EQ(lights.count, 300);
   for (int i = 0; i < lights.count; ++i) {
-    const float probability = lights.rows[i * light_stride + 16];
+    const float probability = lights.rows[i * light_stride + 7];
     EXPECT_EQ(probability, lights.cdf[i + 1] - lights.cdf[i]);
     EXPECT_GE(probability, 0x1p-24f) << "a light that shines must be found";
     EXPECT_EQ(lights.cdf[i] * 0x1p24f, std::floor(lights.cdf[i] * 0x1p24f));

@@ -77,7 +77,8 @@ expect 1 'a.exr' metrics a.exr b.exr
 expect 0 '' render cornell -o a.exr $small --sampler rcs --seed 3 --stats a.json --weights w.exr
 for key in scene sampler width isa threads seed spp depth resolution render_seconds cpu_seconds \
   paths rays camera bounce shadow paths_per_cpu_second lanes_active nonfinite features left_out \
-  peak_memory_bytes version lanes pilot_spp mean_weight biased; do
+  peak_memory_bytes version lanes pilot_spp mean_weight biased traversal packets \
+  stage_cpu_seconds sampling film memory_bytes geometry embree; do
   has a.json "\"$key\": "
 done
 has a.json '"seed": 3'
@@ -85,6 +86,22 @@ has a.json '"seed": 3'
 expect 0 'Mpaths' render cornell -o b.exr --resolution 32x24 --spp 2
 expect 0 '' render cornell -o c.exr --resolution 16x24 --spp 2 --quiet
 expect 0 '' render cornell -o t.exr --resolution 32x24 --time 0.2 --quiet
+
+# How rays are traced, and by which kernels, does not change the image.
+for how in '--traversal single' '--traversal packet8-coherent' '--traversal streamnm' --general; do
+  expect 0 '' render cornell -o d.exr --resolution 32x24 --spp 2 --quiet $how
+  expect 0 '^rmse +0$' metrics b.exr d.exr
+done
+expect 2 'packet4' render cornell -o d.exr --traversal packet3
+
+# A profile.
+expect 2 'no weight' profile cornell -o prof --sampler owen
+expect 2 '0 to 1' profile cornell -o prof --weights 0,2
+expect 0 'best mode' profile cornell -o prof --weights 0,1 --lanes 4x4x1,1x1x16 --spp 2 --depth 2 \
+  --repeats 1 --resolution 32x24 --quiet
+has prof/profile.csv '^cornell,rcs,1,1x1x16,bounce,1,single,'
+has prof/profile.csv '^cornell,rcs,0,4x4x1,shadow,0,auto,'
+[ "$(wc -l <prof/renders.csv)" = 5 ] || fail "renders.csv has $(wc -l <prof/renders.csv) lines, not 5"
 
 # Metrics.
 expect 0 '^rmse +0$' metrics a.exr a.exr
