@@ -47,8 +47,7 @@ void append_render(const ProfilePoint& point, std::string& out) {
   fmt::format_to(std::back_inserter(out), "{:<8.4g} {:<8} {:>10.3f} {:>9.0f}% {:>9.0f}%\n",
                  point.weight, to_string(point.lanes),
                  1e-6 * double(r.stats.paths) / r.render_seconds,
-                 100.0 * r.seconds(r.best_mode()) / r.render_seconds,
-                 100.0 * r.best_by_class_seconds() / r.seconds(policy_replay));
+                 100.0 * r.seconds(r.best_mode()) / r.render_seconds, 100.0 * r.policy_share());
 }
 
 }  // namespace

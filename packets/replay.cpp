@@ -39,6 +39,25 @@ std::vector<double> replay_once(const Scene& scene, const Kernel& kernel, const 
   return seconds;
 }
 
+// Every second value from `first` on; all where there is only one.
+double median_of_half(const std::vector<double>& values, std::size_t first) {
+  if (values.size() < 2) return median(values);
+  std::vector<double> half;
+  for (std::size_t i = first; i < values.size(); i += 2) half.push_back(values[i]);
+  return median(half);
+}
+
+// `times` of the class by mode, a value for each repeat.
+void judge_policy(const std::vector<double>* times, ReplayClass& c) {
+  int best = 0;
+  for (int mode = 1; mode < traversal_modes; ++mode) {
+    if (!is_measured(mode)) continue;
+    if (median_of_half(times[mode], 0) < median_of_half(times[best], 0)) best = mode;
+  }
+  c.best_seconds = median_of_half(times[best], 1);
+  c.policy_seconds = median_of_half(times[policy_replay], 1);
+}
+
 }  // namespace
 
 std::string replay_name(int mode) {
@@ -71,6 +90,15 @@ double Replay::best_by_class_seconds() const {
   double sum = 0.0;
   for (const ReplayClass& c : classes) sum += c.seconds[c.best_mode()];
   return sum;
+}
+
+double Replay::policy_share() const {
+  double best = 0.0, policy = 0.0;
+  for (const ReplayClass& c : classes) {
+    best += c.best_seconds;
+    policy += c.policy_seconds;
+  }
+  return best / policy;
 }
 
 Replay replay(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
@@ -107,6 +135,9 @@ Replay replay(const Scene& scene, const SamplerSpec& sampler, const RenderSettin
       const double done = (repeat + double(mode + 1) / replay_modes) / repeats;
       if (progress && !progress(done)) throw Cancelled();
     }
+  }
+  for (std::size_t c = 0; c < result.classes.size(); ++c) {
+    judge_policy(&times[c * replay_modes], result.classes[c]);
   }
   result.render_seconds = median(renders);
   for (std::size_t i = 0; i < times.size(); ++i) {

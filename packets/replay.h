@@ -22,6 +22,9 @@ struct ReplayClass {
   int bounce = 0;  // interactions before the ray
   std::uint64_t rays = 0;
   double seconds[replay_modes] = {};
+  // Of the fixed mode that was fastest in every other repeat, and of the policy, both measured in
+  // the repeats between: the minimum of noisy figures would flatter the fixed mode.
+  double best_seconds = 0.0, policy_seconds = 0.0;
 
   int best_mode() const;  // the fastest fixed one
 };
@@ -35,6 +38,7 @@ struct Replay {
   double seconds(int mode) const;        // all rays in one mode
   int best_mode() const;                 // the one fixed mode that is fastest for all rays together
   double best_by_class_seconds() const;  // each class in its fastest fixed mode
+  double policy_share() const;  // time in the best fixed mode of each class / under the policy
 };
 
 // Renders with one thread, whatever the settings say, then renders and replays in turn, `repeats`

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <set>
 
@@ -76,6 +77,8 @@ TEST(Replay, TellsTheTimeOfEveryModeAndTheLeast) {
     best_by_class += least;
   }
   EXPECT_DOUBLE_EQ(r.best_by_class_seconds(), best_by_class);
+  EXPECT_GT(r.policy_share(), 0.0);
+  EXPECT_TRUE(std::isfinite(r.policy_share()));
   EXPECT_TRUE(is_measured(r.best_mode()) && r.best_mode() != policy_replay);
   for (int mode = 0; mode < traversal_modes; ++mode) {
     if (!is_measured(mode)) continue;
