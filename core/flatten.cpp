@@ -116,8 +116,8 @@ void append_normals(FlatScene& flat, const SceneDescription& description) {
   }
 }
 
-// Embree reads 16 bytes per vertex, kernels rows of four values; lanes on spheres look up triangle
-// 0.
+// Embree reads 16 bytes per vertex, kernels rows of four values. Lanes on spheres look up the first
+// triangle.
 void pad(FlatScene& flat) {
   append(flat.positions, glm::vec3(0.0f));
   if (!flat.normals.empty()) append(flat.normals, glm::vec3(0.0f));

@@ -268,6 +268,27 @@ void settle_ties(const SceneData& scene, const RayQueue& rays, int begin, int en
   }
 }
 
+// Calls f(lanes, whether they are a stream's) with both known at compile time.
+template <class F>
+void with_packets(Packets packets, const F& f) {
+  constexpr auto one = std::integral_constant<int, 1>();
+  constexpr auto sixteen = std::integral_constant<int, 16>();
+  switch (packets) {
+    case Packets::Single:
+      return f(one, std::false_type());
+    case Packets::Four:
+      return f(std::integral_constant<int, 4>(), std::false_type());
+    case Packets::Eight:
+      return f(std::integral_constant<int, 8>(), std::false_type());
+    case Packets::Sixteen:
+      return f(sixteen, std::false_type());
+    case Packets::Stream1M:
+      return f(one, std::true_type());
+    case Packets::StreamNM:
+      return f(sixteen, std::true_type());
+  }
+}
+
 // Traces chunks by the two modes of the plan in turn, and reports what they took per ray.
 template <class Trace>
 void compare_modes(const TraversalPlan& plan, int rays, TraversalPolicy& policy, RayKind kind,
@@ -309,58 +330,26 @@ void trace_planned(TraversalPolicy& policy, RayKind kind, int bounce, int rays, 
 
 void trace_closest(const SceneData& scene, TraversalMode mode, const RayQueue& rays, int begin,
                    int end, HitArray& hits) {
-  const auto trace = [&](auto function) {
-    function(embree(scene), mode.coherent, rays, begin, end, hits);
-  };
-  switch (mode.packets) {
-    case Packets::Single:
-      trace(closest_packets<1>);
-      break;
-    case Packets::Four:
-      trace(closest_packets<4>);
-      break;
-    case Packets::Eight:
-      trace(closest_packets<8>);
-      break;
-    case Packets::Sixteen:
-      trace(closest_packets<16>);
-      break;
-    case Packets::Stream1M:
-      trace(closest_stream<1>);
-      break;
-    case Packets::StreamNM:
-      trace(closest_stream<16>);
-      break;
-  }
+  with_packets(mode.packets, [&](auto lanes, auto stream) {
+    if constexpr (stream) {
+      closest_stream<lanes>(embree(scene), mode.coherent, rays, begin, end, hits);
+    } else {
+      closest_packets<lanes>(embree(scene), mode.coherent, rays, begin, end, hits);
+    }
+  });
   if (mode.coherent) settle_ties(scene, rays, begin, end, hits);
   if (scene.features & bit(Feature::Spheres)) refine_distances(scene, rays, begin, end, hits);
 }
 
 void trace_occluded(const SceneData& scene, TraversalMode mode, ShadowQueue& shadows, int begin,
                     int end) {
-  const auto trace = [&](auto function) {
-    function(embree(scene), mode.coherent, shadows, begin, end);
-  };
-  switch (mode.packets) {
-    case Packets::Single:
-      trace(occluded_packets<1>);
-      break;
-    case Packets::Four:
-      trace(occluded_packets<4>);
-      break;
-    case Packets::Eight:
-      trace(occluded_packets<8>);
-      break;
-    case Packets::Sixteen:
-      trace(occluded_packets<16>);
-      break;
-    case Packets::Stream1M:
-      trace(occluded_stream<1>);
-      break;
-    case Packets::StreamNM:
-      trace(occluded_stream<16>);
-      break;
-  }
+  with_packets(mode.packets, [&](auto lanes, auto stream) {
+    if constexpr (stream) {
+      occluded_stream<lanes>(embree(scene), mode.coherent, shadows, begin, end);
+    } else {
+      occluded_packets<lanes>(embree(scene), mode.coherent, shadows, begin, end);
+    }
+  });
 }
 
 void trace_closest(const SceneData& scene, TraversalPolicy& policy, RayKind kind, int bounce,
