@@ -1,8 +1,8 @@
 // Cost of sample values: nanoseconds of CPU time per value, by sampler, instruction set and width.
 // One batch is what the path integrator asks for: 256 pixels of a tile, four samples of each.
 #include "bench_main.h"
-#include "bench_sampler.h"
 #include "packets/kernel.h"
+#include "samplers/make_state.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ void sample(benchmark::State& loop, const Kernel& kernel, const char* text) {
     number[size_t(i)] = std::uint32_t(i / pixels);
   }
   std::vector<float> u(count + 16), v(count + 16);
-  const SamplerState state = sampler_state(text, seed);
+  const SamplerState state = make_state(parse_sampler(text), seed);
   const SampleBatch batch{pixel.data(), number.data(), count, 0, samples};
   int pair = 0;
   for (auto _ : loop) {

@@ -3,11 +3,11 @@
 // are comparable. Every iteration traces the same paths: caches are warm. Counters give the time
 // per path and each stage's share of it.
 #include "bench_main.h"
-#include "bench_sampler.h"
 #include "bench_scene.h"
 #include "bench_traversal_mode.h"
 #include "packets/film.h"
 #include "packets/kernel.h"
+#include "samplers/make_state.h"
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -52,7 +52,7 @@ void trace(benchmark::State& loop, const std::string& scene_name, const std::str
            int width, LaneLayout lanes) {
   const Scene& scene = bench_scene(scene_name);
   const Kernel& kernel = find_kernel(choose_isa(), width);
-  const SamplerState state = sampler_state(sampler, seed);
+  const SamplerState state = make_state(parse_sampler(sampler), seed);
   TraversalPolicy traversal(packets_of(width), width);
   LayoutPolicy layout(lanes);
   Film film(scene.data().camera.width, scene.data().camera.height);

@@ -6,6 +6,7 @@
 #include "packets/checkpoint.h"
 #include "packets/pass.h"
 #include "samplers/dimensions.h"
+#include "samplers/make_state.h"
 #include "samplers/weight_map.h"
 
 #include <fmt/format.h>
@@ -40,16 +41,6 @@ SamplerState pilot_state(const SamplerSpec& sampler, const RenderSettings& setti
   SamplerState state;
   state.seed = stream_seed(settings.seed, 1);
   state.sequence = sampler.sequence;
-  return state;
-}
-
-SamplerState image_state(const SamplerSpec& sampler, const RenderSettings& settings) {
-  SamplerState state;
-  state.seed = stream_seed(settings.seed, 0);
-  state.shared = sampler.shared;
-  state.sequence = sampler.sequence;
-  state.perturbation = sampler.perturbation;
-  state.weight = sampler.perturbation == Perturbation::None ? 0.0f : sampler.weight;
   return state;
 }
 
@@ -100,7 +91,7 @@ class Renderer {
                                       std::size_t(pass_.threads));
     restore();
     RenderResult result;
-    SamplerState state = image_state(sampler_, settings_);
+    SamplerState state = make_state(sampler_, stream_seed(settings_.seed, 0));
     double weight = state.shared ? double(state.weight) : 1.0;
     if (pilot_spp_ > 0) {
       render_pilot();

@@ -1,6 +1,7 @@
 // Sample values through the kernels: bits across widths, stratification, uniformity, independence.
 // Statistics are taken with the widest kernel; that the others agree bit for bit is tested first.
 #include "packets/kernel.h"
+#include "samplers/make_state.h"
 #include "samplers/dimensions.h"
 #include "samplers/sampler.h"
 #include "tests/t_statistics.h"
@@ -66,14 +67,7 @@ Values draw(const SamplerState& state, std::uint32_t pixel, int pair, std::uint3
 }
 
 SamplerState state_of(std::string_view text, std::uint32_t seed = 7) {
-  const SamplerSpec spec = parse_sampler(text);
-  SamplerState state;
-  state.seed = seed;
-  state.shared = spec.shared;
-  state.sequence = spec.sequence;
-  state.perturbation = spec.perturbation;
-  state.weight = spec.weight;
-  return state;
+  return make_state(parse_sampler(text), seed);
 }
 
 const char* const samplers[] = {"random",
