@@ -44,10 +44,11 @@ void append_class(const Profile& profile, const ProfilePoint& point, const Repla
 
 void append_render(const ProfilePoint& point, std::string& out) {
   const Replay& r = point.replay;
-  fmt::format_to(std::back_inserter(out), "{:<8.4g} {:<8} {:>10.3f} {:>9.0f}% {:>9.0f}%\n",
-                 point.weight, to_string(point.lanes),
-                 1e-6 * double(r.stats.paths) / r.render_seconds,
-                 100.0 * r.seconds(r.best_mode()) / r.render_seconds, 100.0 * r.policy_share());
+  fmt::format_to(std::back_inserter(out),
+                 "{:<8.4g} {:<8} {:>10.3f} {:>9.0f}% {:>9.0f}% {:>10.2f}\n", point.weight,
+                 to_string(point.lanes), 1e-6 * double(r.stats.paths) / r.render_seconds,
+                 100.0 * r.seconds(r.best_mode()) / r.render_seconds, 100.0 * r.policy_share(),
+                 r.seconds(single_mode) / r.seconds(policy_replay));
 }
 
 }  // namespace
@@ -96,18 +97,20 @@ std::string profile_renders_csv(const Profile& profile, const ProfileSettings& s
   std::string out =
       "scene,sampler,weight,lanes,spp,depth,width,isa,paths,cpu_seconds,"
       "paths_per_cpu_second,sampling_seconds,traversal_seconds,shading_seconds,"
-      "film_seconds,limit_share\n";
+      "film_seconds,limit_share,policy_share,gain_over_single\n";
   for (const ProfilePoint& p : profile) {
     const Replay& r = p.replay;
     const double* stage = r.stats.stage_seconds;
     fmt::format_to(std::back_inserter(out),
-                   "{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.4f}\n",
+                   "{},{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.4f},{:."
+                   "4f},{:.4f}\n",
                    quoted(settings.scene), quoted(to_string(settings.sampler)), p.weight,
                    to_string(p.lanes), r.stats.spp, settings.render.depth, r.stats.width,
                    name(settings.render.isa), r.stats.paths, r.render_seconds,
                    double(r.stats.paths) / r.render_seconds, stage[int(Stage::Sampling)],
                    stage[int(Stage::Traversal)], stage[int(Stage::Shading)],
-                   stage[int(Stage::Film)], r.seconds(r.best_mode()) / r.render_seconds);
+                   stage[int(Stage::Film)], r.seconds(r.best_mode()) / r.render_seconds,
+                   r.policy_share(), r.seconds(single_mode) / r.seconds(policy_replay));
   }
   return out;
 }
@@ -126,9 +129,9 @@ std::string profile_table(const Profile& profile) {
       std::back_inserter(out),
       "\nWhole renders, one thread. limit: traversal alone in its best single mode, as a "
       "share of the\nrender's CPU time. policy: time with the best mode for every kind "
-      "and bounce over the time\nunder the measuring policy.\n\n{:<8} {:<8} {:>10} "
-      "{:>10} {:>10}\n",
-      "weight", "lanes", "Mpaths/s", "limit", "policy");
+      "and bounce over the time\nunder the measuring policy. gain: time of single rays over "
+      "that under the policy.\n\n{:<8} {:<8} {:>10} {:>10} {:>10} {:>10}\n",
+      "weight", "lanes", "Mpaths/s", "limit", "policy", "gain");
   for (const ProfilePoint& p : profile) append_render(p, out);
   return out;
 }

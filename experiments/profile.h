@@ -41,7 +41,8 @@ std::string profile_csv(const Profile& profile, const ProfileSettings& settings)
 
 // A row for each weight and layout, with what whole renders cost:
 // scene,sampler,weight,lanes,spp,depth,width,isa,paths,cpu_seconds,paths_per_cpu_second,
-// sampling_seconds,traversal_seconds,shading_seconds,film_seconds,limit_share
+// sampling_seconds,traversal_seconds,shading_seconds,film_seconds,limit_share,policy_share,
+// gain_over_single
 std::string profile_renders_csv(const Profile& profile, const ProfileSettings& settings);
 
 // What both tell, for the terminal.

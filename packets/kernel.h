@@ -72,9 +72,10 @@ struct Kernel {
   FeatureMask features;       // that it is compiled for: scenes with others need another kernel
   std::size_t scratch_bytes;  // 64-byte aligned memory that trace_tile works in
   void (*trace_tile)(const TileJob& job, void* scratch, TileCounts& counts);
-  // Traces the log's rays again as the policy says, queue by queue, and tells the ticks of each.
-  void (*replay)(const SceneData& scene, const RayLog& log, TraversalPolicy& policy,
-                 std::uint64_t* ticks);
+  // Traces the rays of some of the log's queues again as the policy says, and tells the ticks of
+  // each queue.
+  void (*replay)(const SceneData& scene, const RayLog& log, QueueRange queues,
+                 TraversalPolicy& policy, std::uint64_t* ticks);
   // Values of one pair for a batch: what the path integrator draws, exposed for the tests.
   void (*fill_pair)(const SamplerState&, const SampleBatch&, int pair, float* u, float* v);
 };

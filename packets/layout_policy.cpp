@@ -1,17 +1,17 @@
 #include "packets/layout_policy.h"
 
-#include <cmath>
-
 namespace lockstep {
 namespace {
 
 constexpr LaneLayout layouts[] = {{4, 4, 1}, {2, 2, 4}, {1, 1, 16}};
 constexpr std::uint8_t order[] = {1, 2, 0};
 constexpr std::uint32_t fewest_samples = 32;
+constexpr std::uint32_t spacing = 4;  // half a tile is a large part
 
 }  // namespace
 
-LayoutPolicy::LayoutPolicy(std::optional<LaneLayout> fixed) : fixed_(fixed), choice_(0, order) {}
+LayoutPolicy::LayoutPolicy(std::optional<LaneLayout> fixed)
+    : fixed_(fixed), choice_(0, order, spacing) {}
 
 LayoutPlan LayoutPolicy::plan(std::uint32_t samples) {
   if (fixed_) return {*fixed_, {}};
@@ -27,10 +27,12 @@ LayoutPlan LayoutPolicy::plan(std::uint32_t samples) {
   return plan;
 }
 
-void LayoutPolicy::record(double ratio) {
-  const double log_ratio = std::log(ratio);
-  if (half_done_) choice_.record(trying_, std::exp(0.5 * (first_log_ratio_ + log_ratio)));
-  first_log_ratio_ = log_ratio;
+void LayoutPolicy::record(double trial_time, double plan_time) {
+  if (half_done_) {
+    choice_.record(trying_, first_trial_time_ + trial_time, first_plan_time_ + plan_time);
+  }
+  first_trial_time_ = trial_time;
+  first_plan_time_ = plan_time;
   half_done_ = !half_done_;
 }
 

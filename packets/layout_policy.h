@@ -25,14 +25,14 @@ class LayoutPolicy {
   // For a tile of `samples` samples per pixel; fewer than 32 are too few for a trial.
   LayoutPlan plan(std::uint32_t samples);
 
-  // The time per path of a trial over that of the plan's layout.
-  void record(double ratio);
+  // What a path took in the trial's layout, and in the plan's.
+  void record(double trial_time, double plan_time);
 
  private:
   std::optional<LaneLayout> fixed_;
   MeasuredChoice choice_;
   int trying_ = 0;
-  double first_log_ratio_ = 0.0;  // of a pair of trials, one in each order
+  double first_trial_time_ = 0.0, first_plan_time_ = 0.0;  // of a pair of trials, one in each order
   bool half_done_ = false;
 };
 

@@ -6,32 +6,48 @@
 namespace lockstep {
 namespace {
 
-constexpr int enough = 3;            // trials of an alternative before it may be chosen
-constexpr float gain = 0.015f;       // by which it must be faster; all as logarithms of ratios
-constexpr float slower = 0.12f;      // its next trials are put off,
-constexpr float much_slower = 0.5f;  // and put off for long
+// Once all were tried, pieces of work from one trial to the next, times the spacing: of the
+// runner-up, and of any other or a runner-up that is far behind.
+constexpr std::uint32_t of_runner_up = 4, of_others = 16;
 
-// Pieces from one trial to the next.
-std::uint32_t spacing(std::uint32_t pieces) { return pieces < 128 ? 8 : pieces < 512 ? 16 : 64; }
+constexpr double remembered = 0.95;  // of a sum when the next trial is added
+constexpr double outlier = 4.0;      // ratios beyond: a thread was interrupted
+constexpr double close = 1.15;       // a runner-up
+constexpr double much_slower = 1.5;  // above this ratio an alternative
+constexpr int turns_of_rest = 3;     // sits out that many turns
+
+// The ratio below which an alternative is chosen after so many trials: one is off by a tenth.
+double convincing(int trials) {
+  return trials < 2    ? 0.4
+         : trials < 4  ? 0.6
+         : trials < 8  ? 0.75
+         : trials < 16 ? 0.88
+         : trials < 32 ? 0.93
+                       : 0.965;
+}
 
 }  // namespace
 
-float MeasuredChoice::Arm::median() const {
-  std::array<float, kept> sorted = log_ratios;
-  const auto middle = sorted.begin() + std::min(count, kept) / 2;
-  std::nth_element(sorted.begin(), middle, sorted.begin() + std::min(count, kept));
-  return *middle;
-}
-
-MeasuredChoice::MeasuredChoice(int first, std::span<const std::uint8_t> order)
-    : chosen_(first), order_(order) {}
+MeasuredChoice::MeasuredChoice(int first, std::span<const std::uint8_t> order,
+                               std::uint32_t spacing)
+    : chosen_(first), order_(order), spacing_(spacing) {}
 
 std::optional<int> MeasuredChoice::trial() {
-  ++pieces_;
-  if (pieces_ % spacing(pieces_) != 0) return std::nullopt;
+  // At random: pieces come in cycles, such as the samples of a tile.
+  random_ = random_ * 1664525u + 1013904223u;
+  if ((random_ >> 16) % spacing_ != 0) return std::nullopt;
+  if (turns_ < order_.size()) return next_in_order();
+  ++later_pieces_;
+  if (later_pieces_ % of_others == 0) return next_in_order();
+  if (later_pieces_ % of_runner_up != 0) return std::nullopt;
+  const auto second = runner_up();
+  const bool is_close = second && arms_[std::size_t(*second)].ratio() < close;
+  return is_close || later_pieces_ % of_others == of_runner_up ? second : std::nullopt;
+}
+
+std::optional<int> MeasuredChoice::next_in_order() {
   for (std::size_t looked = 0; looked < order_.size(); ++looked) {
-    const int alternative = order_[next_];
-    next_ = (next_ + 1) % order_.size();
+    const int alternative = order_[turns_++ % order_.size()];
     if (alternative == chosen_) continue;
     Arm& arm = arms_[std::size_t(alternative)];
     if (arm.rest == 0) return alternative;
@@ -40,25 +56,34 @@ std::optional<int> MeasuredChoice::trial() {
   return std::nullopt;
 }
 
-void MeasuredChoice::record(int trial, double ratio) {
-  if (!(ratio > 0.0) || std::isinf(ratio)) return;
-  Arm& arm = arms_[std::size_t(trial)];
-  arm.log_ratios[std::size_t(arm.count % Arm::kept)] = float(std::log(ratio));
-  ++arm.count;
-  const float median = arm.median();
-  if (median > slower) arm.rest = median > much_slower ? 32 : 8;
-  if (arm.count >= enough && median < -gain) choose(trial, median);
+std::optional<int> MeasuredChoice::runner_up() const {
+  std::optional<int> best;
+  for (const std::uint8_t alternative : order_) {
+    const Arm& arm = arms_[alternative];
+    if (alternative == chosen_ || arm.count == 0) continue;
+    if (!best || arm.ratio() < arms_[std::size_t(*best)].ratio()) best = alternative;
+  }
+  return best;
 }
 
-void MeasuredChoice::choose(int alternative, float log_ratio) {
-  // What is known of the others now counts from the new choice.
-  for (Arm& arm : arms_) {
-    for (float& r : arm.log_ratios) r -= log_ratio;
-  }
-  Arm& old = arms_[std::size_t(chosen_)];
-  old = Arm{};
-  old.log_ratios.fill(-log_ratio);
-  old.count = enough;
+void MeasuredChoice::record(int trial, double trial_time, double chosen_time) {
+  const double ratio = trial_time / chosen_time;
+  if (!(chosen_time > 0.0) || !(ratio > 1.0 / outlier) || !std::isfinite(ratio)) return;
+  Arm& arm = arms_[std::size_t(trial)];
+  arm.time = remembered * arm.time + std::min(ratio, outlier) * chosen_time;
+  arm.chosen_time = remembered * arm.chosen_time + chosen_time;
+  ++arm.count;
+  if (arm.ratio() > much_slower) arm.rest = turns_of_rest;
+  if (arm.ratio() < convincing(arm.count)) choose(trial);
+}
+
+void MeasuredChoice::choose(int alternative) {
+  const Arm chosen = arms_[std::size_t(alternative)];
+  // What is known of the others now counts from the new choice, and may be out of date.
+  for (Arm& arm : arms_) arm.chosen_time *= chosen.ratio(), arm.rest = 0;
+  turns_ = 0;
+  arms_[std::size_t(chosen_)] = {chosen.chosen_time, chosen.time, chosen.count, 0};
+  arms_[std::size_t(alternative)] = {};
   chosen_ = alternative;
 }
 

@@ -5,6 +5,7 @@
 // depends on it, so every width, layout, thread count and tile order gives the same image.
 #pragma once
 
+#include "packets/flush_denormals.h"
 #include "packets/paths.h"
 #include "packets/shade.h"
 #include "packets/traversal.h"
@@ -197,15 +198,13 @@ void trace_in_layouts(TileJob tile, Wave& wave, TileCounts& counts) {
     ticks_per_sample[trial] = double(read_ticks() - start) / tile.samples;
     tile.first_sample += tile.samples;
   }
-  tile.layout_policy->record(ticks_per_sample[1] / ticks_per_sample[0]);
+  tile.layout_policy->record(ticks_per_sample[1], ticks_per_sample[0]);
 }
 
 template <int W, FeatureMask F>
 void trace_tile(const TileJob& tile, void* scratch, TileCounts& counts) {
-  const unsigned saved_mode = _mm_getcsr();
-  _mm_setcsr(saved_mode | 0x8040);  // flush denormals to zero, in results and operands
+  const FlushDenormals flush;
   trace_in_layouts<W, F>(tile, *static_cast<Wave*>(scratch), counts);
-  _mm_setcsr(saved_mode);
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

@@ -16,6 +16,11 @@ struct RayArrays {
   const float* distance;  // up to which a shadow ray looks; null for closest hits
 };
 
+// [begin, end), by number.
+struct QueueRange {
+  std::size_t begin = 0, end = 0;
+};
+
 // In the order in which they were traced, queue by queue.
 struct RayLog {
   struct Queue {

@@ -16,25 +16,70 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+struct ClassifiedLog {
+  RayLog rays;
+  std::vector<ReplayClass> classes;         // in order of appearance, without times
+  std::vector<std::size_t> class_of_queue;  // index in classes
+};
+
+void classify(ClassifiedLog& log) {
+  std::map<std::pair<RayKind, int>, std::size_t> known;
+  for (const RayLog::Queue& q : log.rays.queues) {
+    const auto [entry, is_new] = known.try_emplace({q.kind, q.bounce}, log.classes.size());
+    if (is_new) log.classes.push_back({q.kind, q.bounce, 0, {}});
+    log.classes[entry->second].rays += std::uint64_t(q.count);
+    log.class_of_queue.push_back(entry->second);
+  }
+}
+
 bool is_measured(int mode) {
   return mode == policy_replay || traversal_mode(mode) != TraversalMode{Packets::Single, true};
 }
 
-// CPU seconds per class of one pass over the log: ticks, scaled to what the thread was charged.
-std::vector<double> replay_once(const Scene& scene, const Kernel& kernel, const RayLog& log,
-                                int mode, const std::vector<std::size_t>& class_of_queue,
-                                std::size_t classes) {
-  TraversalPolicy policy(mode == policy_replay ? std::nullopt : std::optional(traversal_mode(mode)),
-                         default_width(kernel.isa));
-  std::vector<std::uint64_t> ticks(log.queues.size());
+// Modes take turns after each block, so that a machine that is slow for a while slows them all.
+constexpr std::size_t block_queues = 32;
+
+// By class and mode: entry class * replay_modes + mode.
+using Seconds = std::vector<double>;
+
+// Adds the CPU seconds of one block in one mode: ticks, scaled to what the thread was charged.
+void replay_block(const Scene& scene, const Kernel& kernel, const ClassifiedLog& log,
+                  QueueRange block, int mode, TraversalPolicy& policy, Seconds& seconds) {
+  std::uint64_t ticks[block_queues];
   const double cpu = thread_cpu_seconds();
   const std::uint64_t start = read_ticks();
-  kernel.replay(scene.data(), log, policy, ticks.data());
+  kernel.replay(scene.data(), log.rays, block, policy, ticks);
   const double seconds_per_tick =
       (thread_cpu_seconds() - cpu) / double(std::max<std::uint64_t>(read_ticks() - start, 1));
-  std::vector<double> seconds(classes, 0.0);
-  for (std::size_t q = 0; q < ticks.size(); ++q) {
-    seconds[class_of_queue[q]] += double(ticks[q]) * seconds_per_tick;
+  for (std::size_t q = block.begin; q < block.end; ++q) {
+    seconds[log.class_of_queue[q] * replay_modes + std::size_t(mode)] +=
+        double(ticks[q - block.begin]) * seconds_per_tick;
+  }
+}
+
+std::vector<TraversalPolicy> policies_by_mode(int width) {
+  std::vector<TraversalPolicy> policies;
+  for (int mode = 0; mode < replay_modes; ++mode) {
+    policies.emplace_back(
+        mode == policy_replay ? std::nullopt : std::optional(traversal_mode(mode)), width);
+  }
+  return policies;
+}
+
+// All rays once in every mode. The policy learns from the beginning. `progress` gets a share.
+Seconds replay_all(const Scene& scene, const Kernel& kernel, const ClassifiedLog& log,
+                   const Progress& progress) {
+  std::vector<TraversalPolicy> policies = policies_by_mode(default_width(kernel.isa));
+  Seconds seconds(log.classes.size() * replay_modes, 0.0);
+  const std::size_t queues = log.rays.queues.size();
+  for (std::size_t begin = 0; begin < queues; begin += block_queues) {
+    const QueueRange block{begin, std::min(begin + block_queues, queues)};
+    for (int turn = 0; turn < replay_modes; ++turn) {
+      const int mode = int((std::size_t(turn) + begin / block_queues) % replay_modes);
+      if (!is_measured(mode)) continue;
+      replay_block(scene, kernel, log, block, mode, policies[std::size_t(mode)], seconds);
+    }
+    if (progress && !progress(double(block.end) / double(queues))) throw Cancelled();
   }
   return seconds;
 }
@@ -105,35 +150,25 @@ Replay replay(const Scene& scene, const SamplerSpec& sampler, const RenderSettin
               int repeats, const Progress& progress) {
   RenderSettings one = settings;
   one.threads = 1;
-  RayLog log;
-  one.log = &log;
+  ClassifiedLog log;
+  one.log = &log.rays;
   Replay result;
   result.stats = render(scene, sampler, one).stats;
   one.log = nullptr;
-
-  std::vector<std::size_t> class_of_queue;
-  std::map<std::pair<RayKind, int>, std::size_t> known;
-  for (const RayLog::Queue& q : log.queues) {
-    const auto [entry, is_new] = known.try_emplace({q.kind, q.bounce}, result.classes.size());
-    if (is_new) result.classes.push_back({q.kind, q.bounce, 0, {}});
-    result.classes[entry->second].rays += std::uint64_t(q.count);
-    class_of_queue.push_back(entry->second);
-  }
+  classify(log);
+  result.classes = log.classes;
 
   const Kernel& kernel = find_kernel(settings.isa, settings.width);
   std::vector<double> renders;
   std::vector<std::vector<double>> times(result.classes.size() * replay_modes);
   for (int repeat = 0; repeat < repeats; ++repeat) {
     renders.push_back(render(scene, sampler, one).stats.cpu_seconds);
-    for (int mode = 0; mode < replay_modes; ++mode) {
-      if (!is_measured(mode)) continue;
-      const auto seconds =
-          replay_once(scene, kernel, log, mode, class_of_queue, result.classes.size());
-      for (std::size_t c = 0; c < seconds.size(); ++c) {
-        times[c * replay_modes + std::size_t(mode)].push_back(seconds[c]);
-      }
-      const double done = (repeat + double(mode + 1) / replay_modes) / repeats;
-      if (progress && !progress(done)) throw Cancelled();
+    const auto show = [&](double share) {
+      return !progress || progress((repeat + share) / repeats);
+    };
+    const Seconds seconds = replay_all(scene, kernel, log, show);
+    for (std::size_t i = 0; i < seconds.size(); ++i) {
+      if (is_measured(int(i % replay_modes))) times[i].push_back(seconds[i]);
     }
   }
   for (std::size_t c = 0; c < result.classes.size(); ++c) {

@@ -42,7 +42,7 @@ struct Replay {
 };
 
 // Renders with one thread, whatever the settings say, then renders and replays in turn, `repeats`
-// times each. Keeps some 30 bytes per ray.
+// times each; modes take turns every few thousand rays. Keeps some 30 bytes per ray.
 Replay replay(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
               int repeats, const Progress& progress = {});
 

@@ -2,12 +2,9 @@
 // cheap enough to stay on.
 #pragma once
 
-#include <chrono>
-#include <cstdint>
+#include "core/cpu_clock.h"
 
-#if defined(__x86_64__)
-#include <x86intrin.h>
-#endif
+#include <cstdint>
 
 namespace lockstep {
 
@@ -17,9 +14,9 @@ inline constexpr int stages = 4;
 // Ticks of constant length.
 [[gnu::always_inline]] inline std::uint64_t read_ticks() {
 #if defined(__x86_64__)
-  return __rdtsc();
+  return __builtin_ia32_rdtsc();  // <x86intrin.h> takes a second to compile
 #else
-  return std::uint64_t(std::chrono::steady_clock::now().time_since_epoch().count());
+  return std::uint64_t(1e9 * wall_seconds());
 #endif
 }
 

@@ -1,18 +1,22 @@
 // Compiled once per instruction set.
 #include "packets/traversal.h"
 
+#include "packets/flush_denormals.h"
 #include "packets/stage_clock.h"
 
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <bit>
 #include <memory>
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 namespace {
 
-constexpr int chunk = 128;  // rays of a stream, and of a turn when two modes are compared
+constexpr int chunk = 128;       // rays of a stream
+constexpr int trial_slice = 64;  // rays traced in one mode, then as many in another,
+constexpr int trial_slices = 8;  // at most
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 RTCScene embree(const SceneData& scene) { return static_cast<RTCScene>(scene.embree_scene); }
@@ -289,27 +293,49 @@ void with_packets(Packets packets, const F& f) {
   }
 }
 
-// Traces chunks by the two modes of the plan in turn, and reports what they took per ray.
+// Times slices in the middle of the queue, in each mode of the plan in turn: neighbouring rays cost
+// about the same, distant ones do not.
 template <class Trace>
-void compare_modes(const TraversalPlan& plan, int rays, TraversalPolicy& policy, RayKind kind,
-                   int bounce, const Trace& trace) {
-  std::uint64_t ticks[2] = {};
-  int traced[2] = {};
-  for (int begin = 0, turn = 0; begin < rays; begin += chunk, turn ^= 1) {
-    const int end = std::min(begin + chunk, rays);
+void compare_modes(const TraversalPlan& plan, int rays, TraversalPolicy& policy,
+                   const QueueClass& queue, const Trace& trace) {
+  const int slice = std::min(trial_slice, rays / 2 / 16 * 16);
+  const int slices = std::min(trial_slices, rays / slice / 2 * 2);
+  const int first = (rays - slices * slice) / 2 / 16 * 16, last = first + slices * slice;
+  double ticks[2] = {};  // in the plan's mode, in the trial's
+  if (first > 0) trace(plan.mode, 0, first);
+  for (int i = 0; i < slices; ++i) {
+    // 0 1 1 0 1 0 0 1: neither mode comes first more often, nor further along.
+    const bool trial = (std::popcount(unsigned(i)) % 2 == 1) != plan.trial_first;
+    const int begin = first + i * slice;
     const std::uint64_t start = read_ticks();
-    trace(turn == 0 ? plan.mode : *plan.trial, begin, end);
-    ticks[turn] += read_ticks() - start;
-    traced[turn] += end - begin;
+    trace(trial ? *plan.trial : plan.mode, begin, begin + slice);
+    ticks[trial] += double(read_ticks() - start);
   }
-  const double per_ray[2] = {double(ticks[0]) / traced[0], double(ticks[1]) / traced[1]};
-  policy.record(kind, bounce, *plan.trial, per_ray[1] / per_ray[0]);
+  if (last < rays) trace(plan.mode, last, rays);
+  const double each = slices / 2 * slice;
+  policy.record(queue, *plan.trial, ticks[1] / each, ticks[0] / each);
 }
 
-template <class Trace>
-void trace_planned(TraversalPolicy& policy, RayKind kind, int bounce, int rays, TileCounts& counts,
-                   const Trace& trace) {
-  if (rays == 0) return;
+// How far the directions of neighbouring rays spread, from eight groups of eight.
+LOCKSTEP_INLINE int spread_of(const Float3Array& direction, int rays) {
+  constexpr int group = 8, groups = 8;
+  using V = Float<4>;
+  const int step = std::max(group, rays / groups / group * group);
+  float length = 0.0f;
+  int seen = 0;
+  for (int i = 0; i + group <= rays && seen < groups; i += step, ++seen) {
+    Vec3<V> sum = load3<V>(direction, i) + load3<V>(direction, i + 4);
+    const auto total = [](V v) { return (v[0] + v[1]) + (v[2] + v[3]); };
+    const float x = total(sum.x), y = total(sum.y), z = total(sum.z);
+    length += sqrt(x * x + y * y + z * z);
+  }
+  return seen > 0 ? spread_class(length / float(group * seen)) : spreads - 1;
+}
+
+template <class Queue, class Trace>
+void trace_planned(TraversalPolicy& policy, RayKind kind, int bounce, const Queue& rays,
+                   TileCounts& counts, const Trace& trace) {
+  if (rays.count == 0) return;
   const auto traced = [&](TraversalMode mode, int begin, int end) {
     trace(mode, begin, end);
     const int n = end - begin, width = lanes(mode.packets), packets = (n + width - 1) / width;
@@ -318,11 +344,12 @@ void trace_planned(TraversalPolicy& policy, RayKind kind, int bounce, int rays, 
     counts.lanes += std::uint64_t(packets) * std::uint64_t(width);
     counts.active_lanes += std::uint64_t(n);
   };
-  const TraversalPlan plan = policy.plan(kind, bounce, rays);
+  const QueueClass queue{kind, bounce, spread_of(rays.direction, rays.count)};
+  const TraversalPlan plan = policy.plan(queue, rays.count);
   if (plan.trial) {
-    compare_modes(plan, rays, policy, kind, bounce, traced);
+    compare_modes(plan, rays.count, policy, queue, traced);
   } else {
-    traced(plan.mode, 0, rays);
+    traced(plan.mode, 0, rays.count);
   }
 }
 
@@ -354,27 +381,28 @@ void trace_occluded(const SceneData& scene, TraversalMode mode, ShadowQueue& sha
 
 void trace_closest(const SceneData& scene, TraversalPolicy& policy, RayKind kind, int bounce,
                    const RayQueue& rays, HitArray& hits, TileCounts& counts) {
-  trace_planned(policy, kind, bounce, rays.count, counts,
-                [&](TraversalMode mode, int begin, int end) {
-                  trace_closest(scene, mode, rays, begin, end, hits);
-                });
+  trace_planned(policy, kind, bounce, rays, counts, [&](TraversalMode mode, int begin, int end) {
+    trace_closest(scene, mode, rays, begin, end, hits);
+  });
 }
 
 void trace_occluded(const SceneData& scene, TraversalPolicy& policy, int bounce,
                     ShadowQueue& shadows, TileCounts& counts) {
-  trace_planned(policy, RayKind::Shadow, bounce, shadows.count, counts,
+  trace_planned(policy, RayKind::Shadow, bounce, shadows, counts,
                 [&](TraversalMode mode, int begin, int end) {
                   trace_occluded(scene, mode, shadows, begin, end);
                 });
 }
 
-void replay(const SceneData& scene, const RayLog& log, TraversalPolicy& policy,
+void replay(const SceneData& scene, const RayLog& log, QueueRange queues, TraversalPolicy& policy,
             std::uint64_t* ticks) {
+  const FlushDenormals flush;
   const auto rays = std::make_unique<RayQueue>();
   const auto shadows = std::make_unique<ShadowQueue>();
   const auto hits = std::make_unique<HitArray>();
   TileCounts counts;
-  for (const RayLog::Queue& queue : log.queues) {
+  for (std::size_t q = queues.begin; q < queues.end; ++q) {
+    const RayLog::Queue& queue = log.queues[q];
     const float* from = log.values.data() + queue.first;
     const auto load_rays = [&](auto& to) {
       to.count = queue.count;

@@ -23,7 +23,7 @@ void trace_occluded(const SceneData& scene, TraversalPolicy& policy, int bounce,
                     ShadowQueue& shadows, TileCounts& counts);
 
 // See Kernel.
-void replay(const SceneData& scene, const RayLog& log, TraversalPolicy& policy,
+void replay(const SceneData& scene, const RayLog& log, QueueRange queues, TraversalPolicy& policy,
             std::uint64_t* ticks);
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

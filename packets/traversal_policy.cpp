@@ -5,7 +5,8 @@
 namespace lockstep {
 namespace {
 
-constexpr int smallest_queue = 256;  // rays; a trial on fewer says little
+constexpr int smallest_queue = 64;  // rays; a trial on fewer says little
+constexpr std::uint32_t spacing = 2;
 
 // The order of trials: first what is often best.
 constexpr std::uint8_t order[] = {
@@ -25,31 +26,39 @@ Packets packets_of(int width) {
 
 }  // namespace
 
+int spread_class(float cosine) {
+  return cosine > 0.999f ? 0 : cosine > 0.99f ? 1 : cosine > 0.9f ? 2 : 3;
+}
+
 TraversalPolicy::TraversalPolicy(std::optional<TraversalMode> fixed, int width) : fixed_(fixed) {
   const Packets packets = packets_of(width);
-  choices_.assign(2 * bounces, MeasuredChoice(index({packets, false}), order));
-  if (width > 1) {
-    choice(RayKind::Camera, 0) = MeasuredChoice(index({packets, true}), order);
-    choice(RayKind::Shadow, 0) = MeasuredChoice(index({packets, true}), order);
+  for (int i = 0; i < 2 * bounces * spreads; ++i) {
+    const bool coherent = i % spreads == 0 && width > 1;
+    choices_.emplace_back(index({packets, coherent}), order, spacing);
   }
 }
 
-MeasuredChoice& TraversalPolicy::choice(RayKind kind, int bounce) {
-  const int at = std::min(bounce, bounces - 1) + (kind == RayKind::Shadow ? bounces : 0);
-  return choices_[std::size_t(at)];
+MeasuredChoice& TraversalPolicy::choice(const QueueClass& queue) {
+  const int kind = queue.kind == RayKind::Shadow ? 1 : 0;
+  const int bounce = std::min(queue.bounce, bounces - 1);
+  return choices_[std::size_t((kind * bounces + bounce) * spreads + queue.spread)];
 }
 
-TraversalPlan TraversalPolicy::plan(RayKind kind, int bounce, int rays) {
+TraversalPlan TraversalPolicy::plan(const QueueClass& queue, int rays) {
   if (fixed_) return {*fixed_, {}};
-  MeasuredChoice& c = choice(kind, bounce);
+  MeasuredChoice& c = choice(queue);
   TraversalPlan plan{traversal_mode(c.chosen()), {}};
   if (rays < smallest_queue) return plan;
-  if (const auto trial = c.trial()) plan.trial = traversal_mode(*trial);
+  if (const auto trial = c.trial()) {
+    plan.trial = traversal_mode(*trial);
+    plan.trial_first = c.trial_first(*trial);
+  }
   return plan;
 }
 
-void TraversalPolicy::record(RayKind kind, int bounce, TraversalMode trial, double ratio) {
-  choice(kind, bounce).record(index(trial), ratio);
+void TraversalPolicy::record(const QueueClass& queue, TraversalMode trial, double trial_time,
+                             double plan_time) {
+  choice(queue).record(index(trial), trial_time, plan_time);
 }
 
 }  // namespace lockstep

@@ -12,28 +12,39 @@ namespace lockstep {
 
 struct TraversalPlan {
   TraversalMode mode;
-  std::optional<TraversalMode> trial;  // to trace every other part with
+  std::optional<TraversalMode> trial;  // for some of the rays, timed beside as many in `mode`
+  bool trial_first = false;            // of the two
 };
 
-// A choice for each kind of ray and bounce. One object per thread.
+// What a queue of rays is like.
+struct QueueClass {
+  RayKind kind = RayKind::Camera;
+  int bounce = 0;  // interactions before the rays
+  int spread = 0;  // of neighbours' directions, from 0, almost parallel, to spreads - 1
+};
+inline constexpr int spreads = 4;
+
+// `cosine`: the length of the mean of neighbours' directions, typically.
+int spread_class(float cosine);
+
+// A choice for each class of queues. One object per thread.
 class TraversalPolicy {
  public:
   // Uses `fixed` for everything if given; else begins with packets of `width` lanes.
   TraversalPolicy(std::optional<TraversalMode> fixed, int width);
 
-  // For a queue of `rays` rays. Bounce counts interactions before the rays, from 0.
-  TraversalPlan plan(RayKind kind, int bounce, int rays);
+  TraversalPlan plan(const QueueClass& queue, int rays);
 
-  // The time per ray of a trial over that of the plan's mode.
-  void record(RayKind kind, int bounce, TraversalMode trial, double ratio);
+  // What a ray took in the trial's mode, and in the plan's.
+  void record(const QueueClass& queue, TraversalMode trial, double trial_time, double plan_time);
 
  private:
   static constexpr int bounces = 8;  // told apart
 
-  MeasuredChoice& choice(RayKind kind, int bounce);
+  MeasuredChoice& choice(const QueueClass& queue);
 
   std::optional<TraversalMode> fixed_;
-  std::vector<MeasuredChoice> choices_;  // closest hits by bounce, then shadow rays
+  std::vector<MeasuredChoice> choices_;
 };
 
 }  // namespace lockstep

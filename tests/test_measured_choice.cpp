@@ -38,9 +38,10 @@ struct Work {
   MeasuredChoice choice;
   std::mt19937 random;
   int trials = 0;
+  double lost = 0.0;               // with a quarter of a piece in a trial
   std::map<int, int> worked = {};  // pieces by what was chosen
 
-  Work(int first, unsigned seed) : choice(first, everything), random(seed) {}
+  Work(int first, unsigned seed) : choice(first, everything, 2), random(seed) {}
 
   double noise() { return std::uniform_real_distribution(0.9, 1.1)(random); }
   void go(const Costs& costs, int pieces) {
@@ -50,8 +51,9 @@ struct Work {
       const auto trial = choice.trial();
       if (!trial) continue;
       ++trials;
+      lost += 0.25 * (costs[size_t(*trial)] - costs[size_t(chosen)]);
       ASSERT_NE(*trial, chosen);
-      choice.record(*trial, costs[size_t(*trial)] * noise() / (costs[size_t(chosen)] * noise()));
+      choice.record(*trial, costs[size_t(*trial)] * noise(), costs[size_t(chosen)] * noise());
     }
   }
 };
@@ -92,52 +94,92 @@ TEST(MeasuredChoice, SpendsLittleOnTrials) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     Work work(0, seed);
     work.go(costs_with_fastest(7), 10000);
-    EXPECT_LE(work.trials, 500);
+    EXPECT_LT(work.lost, 0.01 * 10000);
     EXPECT_GE(work.trials, 50) << "too few to notice a change";
   }
 }
 
-TEST(MeasuredChoice, RatiosThatAreNoNumbersChangeNothing) {
+TEST(MeasuredChoice, TimesThatAreNoneChangeNothing) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const auto order = all_alternatives();
-  MeasuredChoice choice(3, order);
+  MeasuredChoice choice(3, everything, 2);
   for (int i = 0; i < 100; ++i) {
-    for (const double ratio : {0.0, -1.0, infinity, -infinity, std::nan("")}) {
-      choice.record(5, ratio);
+    for (const double time : {0.0, -1.0, infinity, -infinity, std::nan("")}) {
+      choice.record(5, time, 1.0);
+      choice.record(5, 1.0, time);
+      choice.record(5, time, time);
       ASSERT_EQ(choice.chosen(), 3);
     }
   }
-  // They count as no trials either: three are needed.
-  choice.record(5, 0.5);
-  choice.record(5, 0.5);
+  // They count as no trials either: two are needed for this gain.
+  choice.record(5, 0.5, 1.0);
   EXPECT_EQ(choice.chosen(), 3);
-  choice.record(5, 0.5);
+  choice.record(5, 0.5, 1.0);
   EXPECT_EQ(choice.chosen(), 5);
+}
+
+TEST(MeasuredChoice, GreatGainsNeedFewTrials) {
+  const auto trials_until_chosen = [](double ratio) {
+    MeasuredChoice choice(3, everything, 2);
+    int trials = 0;
+    while (choice.chosen() == 3 && trials < 50) choice.record(5, ratio, 1.0), ++trials;
+    return trials;
+  };
+  EXPECT_EQ(trials_until_chosen(0.3), 1);
+  EXPECT_EQ(trials_until_chosen(0.5), 2);
+  EXPECT_EQ(trials_until_chosen(0.7), 4);
+  EXPECT_EQ(trials_until_chosen(0.8), 8);
+  EXPECT_EQ(trials_until_chosen(0.9), 16);
+  EXPECT_EQ(trials_until_chosen(0.95), 32);
+  EXPECT_EQ(trials_until_chosen(0.99), 50) << "no gain worth a change";
+}
+
+TEST(MeasuredChoice, InterruptionsOfTheChosenOneDoNotCount) {
+  MeasuredChoice choice(3, everything, 2);
+  for (int i = 0; i < 10; ++i) choice.record(5, 1.0, 100.0);
+  EXPECT_EQ(choice.chosen(), 3);
+}
+
+// Twice as fast on cheap work and 1.3 times as slow where it costs ten times as much: a median of
+// ratios would choose it.
+TEST(MeasuredChoice, SlowWorkCountsForMore) {
+  MeasuredChoice choice(3, everything, 2);
+  choice.record(5, 13.0, 10.0);
+  for (int i = 0; i < 50; ++i) {
+    const bool slow = i % 3 == 0;
+    choice.record(5, slow ? 13.0 : 0.5, slow ? 10.0 : 1.0);
+    ASSERT_EQ(choice.chosen(), 3);
+  }
+}
+
+// An alternative that looked good at first is left again as soon as it is not.
+TEST(MeasuredChoice, GoesBack) {
+  Work work(0, 1);
+  Costs beginning = costs_with_fastest(0), later = beginning;
+  beginning[4] = 0.5;
+  later[4] = 2.0;
+  work.go(beginning, 60);
+  ASSERT_EQ(work.choice.chosen(), 4);
+  work.worked.clear();
+  work.go(later, 600);
+  EXPECT_EQ(work.choice.chosen(), 0);
+  EXPECT_LT(work.worked[4], 80);
 }
 
 // Layouts --------------------------------------------------------------------------------------
 
-// The layouts used, `ratio` telling what a trial measures.
-template <class Ratio>
-std::map<std::string, int> lay_out(LayoutPolicy& policy, int tiles, const Ratio& ratio) {
+double cost_of(const LaneLayout& l) { return l.samples == 1 ? 1.3 : l.samples == 4 ? 1.0 : 1.5; }
+
+// The layouts used. Samples in the second half of a tile cost `second` times as much.
+std::map<std::string, int> lay_out(LayoutPolicy& policy, int tiles, double second) {
   std::map<std::string, int> used;
   for (int i = 0; i < tiles; ++i) {
     const LayoutPlan plan = policy.plan(64);
     ++used[to_string(plan.lanes)];
-    if (plan.trial) policy.record(ratio(plan));
+    if (!plan.trial) continue;
+    policy.record(cost_of(*plan.trial) * (plan.trial_first ? 1.0 : second),
+                  cost_of(plan.lanes) * (plan.trial_first ? second : 1.0));
   }
   return used;
-}
-
-// Samples in the second half of a tile cost `second`.
-auto costs_by_layout(double second) {
-  return [second](const LayoutPlan& plan) {
-    const auto cost = [](const LaneLayout& l) {
-      return l.samples == 1 ? 1.3 : l.samples == 4 ? 1.0 : 1.5;
-    };
-    const double ratio = cost(*plan.trial) / cost(plan.lanes);
-    return plan.trial_first ? ratio / second : ratio * second;
-  };
 }
 
 TEST(LayoutPolicy, AFixedLayoutStays) {
@@ -156,13 +198,13 @@ TEST(LayoutPolicy, FewSamplesAreNoTrial) {
     ASSERT_EQ(plan.lanes, (LaneLayout{4, 4, 1}));
     ASSERT_FALSE(plan.trial);
   }
-  EXPECT_GT(lay_out(policy, 1000, costs_by_layout(1.0))["2x2x4"], 0);
+  EXPECT_GT(lay_out(policy, 1000, 1.0)["2x2x4"], 0);
 }
 
 TEST(LayoutPolicy, FindsTheFastestEvenIfSecondHalvesAreFaster) {
   for (const double second : {1.0, 0.5, 2.0}) {
     LayoutPolicy policy({});
-    const auto used = lay_out(policy, 2000, costs_by_layout(second));
+    const auto used = lay_out(policy, 2000, second);
     EXPECT_GT(used.at("2x2x4"), 1800) << second;
   }
 }
@@ -184,11 +226,11 @@ TEST(LayoutPolicy, BothOrdersAreTriedBeforeATrialCounts) {
     }
     first = plan;
     ++records;
-    policy.record(plan.trial->samples == 4 ? 0.5 : 2.0);
+    policy.record(plan.trial->samples == 4 ? 0.8 : 2.0, 1.0);
   }
   EXPECT_EQ(policy.plan(1).lanes, (LaneLayout{2, 2, 4}));
   EXPECT_EQ(records % 2, 0);
-  EXPECT_GE(records, 6) << "three trials of both orders";
+  EXPECT_GE(records, 6) << "some trials of both orders";
 }
 
 // Traversal ------------------------------------------------------------------------------------
@@ -197,50 +239,66 @@ TEST(TraversalPolicy, AFixedModeStays) {
   const TraversalMode mode{Packets::StreamNM, true};
   TraversalPolicy policy(mode, 16);
   for (int i = 0; i < 1000; ++i) {
-    const TraversalPlan plan = policy.plan(RayKind(i % 3), i % 12, 1024);
+    const TraversalPlan plan = policy.plan({RayKind(i % 3), i % 12, i % spreads}, 1024);
     ASSERT_EQ(plan.mode, mode);
     ASSERT_FALSE(plan.trial);
   }
 }
 
-TEST(TraversalPolicy, BeginsWithPacketsOfTheWidth) {
+TEST(TraversalPolicy, BeginsWithPacketsOfTheWidthCoherentOnesForParallelRays) {
   for (const auto& [width, packets] : {std::pair{1, Packets::Single},
                                        {4, Packets::Four},
                                        {8, Packets::Eight},
                                        {16, Packets::Sixteen}}) {
     TraversalPolicy policy({}, width);
-    const TraversalMode plain{packets, false}, first{packets, width > 1};
-    EXPECT_EQ(policy.plan(RayKind::Camera, 0, 1024).mode, first);
-    EXPECT_EQ(policy.plan(RayKind::Shadow, 0, 1024).mode, first);
-    EXPECT_EQ(policy.plan(RayKind::Bounce, 1, 1024).mode, plain);
-    EXPECT_EQ(policy.plan(RayKind::Shadow, 1, 1024).mode, plain);
+    for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
+      for (int spread = 0; spread < spreads; ++spread) {
+        const TraversalMode expected{packets, spread == 0 && width > 1};
+        EXPECT_EQ(policy.plan({kind, 0, spread}, 1024).mode, expected);
+      }
+    }
   }
 }
 
 TEST(TraversalPolicy, ShortQueuesAreNoTrial) {
   TraversalPolicy policy({}, 8);
-  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(policy.plan(RayKind::Bounce, 2, 1 + i % 255).trial);
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_FALSE(policy.plan({RayKind::Bounce, 2, 3}, 1 + i % 63).trial);
+  }
 }
 
-// Single rays are the fastest after the third bounce, coherent packets for shadow rays.
-TEST(TraversalPolicy, LearnsByKindAndBounce) {
+TEST(TraversalPolicy, SpreadsAreInOrder) {
+  EXPECT_EQ(spread_class(1.0f), 0);
+  EXPECT_EQ(spread_class(0.0f), spreads - 1);
+  int last = 0;
+  for (float cosine = 1.0f; cosine > 0.0f; cosine -= 0.001f) {
+    EXPECT_GE(spread_class(cosine), last);
+    last = spread_class(cosine);
+  }
+}
+
+// Single rays are the fastest after the third bounce, coherent packets for shadow rays, but where
+// they spread.
+TEST(TraversalPolicy, LearnsByClass) {
   const TraversalMode single{Packets::Single, false}, coherent{Packets::Eight, true};
   TraversalPolicy policy({}, 16);
-  const auto work = [&](RayKind kind, int bounce, TraversalMode best) {
+  const auto work = [&](const QueueClass& queue, TraversalMode best) {
     for (int i = 0; i < 3000; ++i) {
-      const TraversalPlan plan = policy.plan(kind, bounce, 512);
+      const TraversalPlan plan = policy.plan(queue, 512);
       if (!plan.trial) continue;
       EXPECT_NE(*plan.trial, (TraversalMode{Packets::Single, true}));
       const auto cost = [&](TraversalMode mode) { return mode == best ? 1.0 : 1.4; };
-      policy.record(kind, bounce, *plan.trial, cost(*plan.trial) / cost(plan.mode));
+      policy.record(queue, *plan.trial, cost(*plan.trial), cost(plan.mode));
     }
-    EXPECT_EQ(policy.plan(kind, bounce, 512).mode, best);
+    EXPECT_EQ(policy.plan(queue, 512).mode, best);
   };
-  work(RayKind::Bounce, 3, single);
-  work(RayKind::Shadow, 3, coherent);
-  EXPECT_EQ(policy.plan(RayKind::Bounce, 3, 512).mode, single);
-  EXPECT_EQ(policy.plan(RayKind::Bounce, 2, 512).mode, (TraversalMode{Packets::Sixteen, false}));
-  EXPECT_EQ(policy.plan(RayKind::Shadow, 2, 512).mode, (TraversalMode{Packets::Sixteen, false}));
+  work({RayKind::Bounce, 3, 2}, single);
+  work({RayKind::Shadow, 3, 2}, coherent);
+  EXPECT_EQ(policy.plan({RayKind::Bounce, 3, 2}, 512).mode, single);
+  const TraversalMode untouched{Packets::Sixteen, false};
+  EXPECT_EQ(policy.plan({RayKind::Bounce, 2, 2}, 512).mode, untouched);
+  EXPECT_EQ(policy.plan({RayKind::Shadow, 2, 2}, 512).mode, untouched);
+  EXPECT_EQ(policy.plan({RayKind::Shadow, 3, 3}, 512).mode, untouched);
 }
 
 }  // namespace
