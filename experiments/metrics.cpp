@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "experiments/squared_error.h"
+#include "experiments/structural_error.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +10,63 @@
 
 namespace lockstep {
 namespace {
+
+// What is evaluated, and where the result goes.
+struct Task {
+  const Image& reference;
+  const Image& test;
+  const MetricSettings& settings;
+  Evaluation& result;
+};
+
+// Metrics that one function evaluates together; it appends their values.
+struct Evaluator {
+  std::vector<Metric> metrics;
+  void (*append)(Task& task);
+};
+
+template <double (*function)(const Image&, const Image&)>
+void append_value(Task& task) {
+  task.result.values.push_back(function(task.reference, task.test));
+}
+
+void append_yee(Task& task) {
+  YeeDifference difference = yee_difference(task.reference, task.test, task.settings.yee);
+  const double pixels = double(task.reference.width) * double(task.reference.height);
+  task.result.values.push_back(double(difference.pixels));
+  task.result.values.push_back(double(difference.pixels) / pixels);
+  task.result.yee_failing = std::move(difference.failing);
+}
+
+void append_flip_ldr(Task& task) {
+  task.result.flip_ldr = flip_ldr_map(task.reference, task.test, task.settings.pixels_per_degree);
+  task.result.values.push_back(mean_of(task.result.flip_ldr));
+}
+
+void append_flip_hdr(Task& task) {
+  task.result.flip_hdr = flip_hdr_map(task.reference, task.test, task.settings.pixels_per_degree);
+  task.result.values.push_back(mean_of(task.result.flip_hdr));
+}
+
+const std::vector<Evaluator>& evaluators() {
+  static const std::vector<Evaluator> table = {
+      {{{"rmse", "RMSE", "radiance"}}, append_value<rmse>},
+      {{{"relmse", "relMSE", ""}}, append_value<relmse>},
+      {{{"relmse_trimmed", "relMSE, worst 0.1 % of pixels left out", ""}},
+       append_value<relmse_trimmed>},
+      {{{"yee_pixels", "Pixels that differ visibly (Yee)", ""},
+        {"yee_share", "Share of pixels that differ visibly (Yee)", ""}},
+       append_yee},
+      {{{"flip_ldr", "FLIP", ""}}, append_flip_ldr},
+      {{{"flip_hdr", "HDR-FLIP", ""}}, append_flip_hdr},
+      {{{"mse", "MSE", "radiance²"}}, append_value<mse>},
+      {{{"smape", "SMAPE", ""}}, append_value<smape>},
+      {{{"ssim", "SSIM", "", false}}, append_value<ssim>},
+      {{{"low_pass_rmse", "RMSE of the error blurred over 4 pixels", "radiance"}},
+       append_value<low_pass_rmse>},
+  };
+  return table;
+}
 
 void check_finite(const Image& image, std::string_view name) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
@@ -20,19 +78,30 @@ void check_finite(const Image& image, std::string_view name) {
   }
 }
 
+void check_colour(const Image& image, std::string_view name) {
+  if (image.pixels.empty()) throw Error(fmt::format("{}: the image has no pixels", name));
+  if (image.channels != 3) {
+    throw Error(
+        fmt::format("{}: {} channels; metrics are defined for RGB images", name, image.channels));
+  }
+  check_finite(image, name);
+}
+
 }  // namespace
 
 const std::vector<Metric>& metrics() {
-  static const std::vector<Metric> table = {
-      {"rmse", "RMSE", "radiance", true, rmse},
-      {"relmse", "relMSE", "", true, relmse},
-      {"relmse_trimmed", "relMSE, worst 0.1 % of pixels left out", "", true, relmse_trimmed},
-  };
+  static const std::vector<Metric> table = [] {
+    std::vector<Metric> all;
+    for (const Evaluator& evaluator : evaluators()) {
+      all.insert(all.end(), evaluator.metrics.begin(), evaluator.metrics.end());
+    }
+    return all;
+  }();
   return table;
 }
 
-std::vector<double> evaluate_metrics(const Image& reference, const Image& test,
-                                     std::string_view reference_name, std::string_view test_name) {
+Evaluation evaluate(const Image& reference, const Image& test, const MetricSettings& settings,
+                    std::string_view reference_name, std::string_view test_name) {
   if (reference.width != test.width || reference.height != test.height ||
       reference.channels != test.channels) {
     throw Error(
@@ -40,11 +109,17 @@ std::vector<double> evaluate_metrics(const Image& reference, const Image& test,
                     reference_name, reference.width, reference.height, reference.channels,
                     test_name, test.width, test.height, test.channels));
   }
-  check_finite(reference, reference_name);
-  check_finite(test, test_name);
-  std::vector<double> values;
-  for (const Metric& metric : metrics()) values.push_back(metric.evaluate(reference, test));
-  return values;
+  check_colour(reference, reference_name);
+  check_colour(test, test_name);
+  Evaluation result;
+  Task task{reference, test, settings, result};
+  for (const Evaluator& evaluator : evaluators()) evaluator.append(task);
+  return result;
+}
+
+std::vector<double> evaluate_metrics(const Image& reference, const Image& test,
+                                     std::string_view reference_name, std::string_view test_name) {
+  return evaluate(reference, test, {}, reference_name, test_name).values;
 }
 
 }  // namespace lockstep

@@ -1,18 +1,23 @@
 // lockstep metrics: how far one image is from another.
 #include "experiments/commands.h"
+#include "experiments/display_image.h"
 #include "experiments/metrics.h"
+#include "experiments/options.h"
+#include "experiments/output_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <memory>
 
 namespace lockstep {
 namespace {
 
 struct MetricsOptions {
-  std::string reference, test;
+  std::string reference, test, maps;
   bool json = false;
+  MetricSettings settings;
 };
 
 std::string table_help() {
@@ -23,23 +28,80 @@ std::string table_help() {
                         metric.lower_is_better ? "" : " (higher is better)");
   }
   return text +
-         "relMSE is the mean over pixels and channels of d^2 / (reference^2 + 0.01). Values are\n"
-         "linear RGB; 8-bit files are taken out of the sRGB curve first.\n"
-         "\nExample:\n  lockstep metrics reference.exr test.exr --json";
+         "relMSE is the mean over pixels and channels of d^2 / (reference^2 + 0.01), SMAPE that "
+         "of\n"
+         "|d| / (|reference| + |test| + 0.01). Values are linear RGB; 8-bit files are taken out "
+         "of\n"
+         "the sRGB curve first. FLIP and SSIM see values above 1 as 1; HDR-FLIP takes the worst "
+         "of\n"
+         "several exposures chosen from the reference. Yee's metric is perceptualdiff's.\n"
+         "\n"
+         "--maps writes flip_ldr.png and flip_hdr.png (black 0 to cream 1), yee.png (white: "
+         "visibly\n"
+         "different) and error.exr (test - reference).\n"
+         "\nExample:\n  lockstep metrics reference.exr test.exr --json --maps out/maps";
+}
+
+Image error_of(const Image& reference, const Image& test) {
+  Image error = test;
+  for (std::size_t i = 0; i < error.pixels.size(); ++i) error.pixels[i] -= reference.pixels[i];
+  return error;
+}
+
+// A one-channel map of zeros and ones as black and white.
+Image black_and_white(const Image& map) {
+  Image image(map.width, map.height, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = map.pixels[i / 3];
+  return image;
+}
+
+void write_maps(const std::string& directory, const Evaluation& evaluation, const Image& error) {
+  const auto path = [&](const char* file) {
+    return (std::filesystem::path(directory) / file).string();
+  };
+  write_image(path("flip_ldr.png"), magma(evaluation.flip_ldr));
+  write_image(path("flip_hdr.png"), magma(evaluation.flip_hdr));
+  write_image(path("yee.png"), black_and_white(evaluation.yee_failing));
+  write_image(path("error.exr"), error);
 }
 
 void run_metrics(const MetricsOptions& options) {
   const Image reference = read_image(options.reference);
   const Image test = read_image(options.test);
-  const std::vector<double> values =
-      evaluate_metrics(reference, test, options.reference, options.test);
+  if (!options.maps.empty()) make_output_directory(options.maps);
+  const Evaluation evaluation =
+      evaluate(reference, test, options.settings, options.reference, options.test);
+  if (!options.maps.empty()) write_maps(options.maps, evaluation, error_of(reference, test));
   nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < values.size(); ++i) {
+  for (std::size_t i = 0; i < evaluation.values.size(); ++i) {
     const Metric& metric = metrics()[i];
-    json[std::string(metric.name)] = values[i];
-    if (!options.json) fmt::print("{:16} {:.9g}\n", metric.name, values[i]);
+    json[std::string(metric.name)] = evaluation.values[i];
+    if (!options.json) fmt::print("{:16} {:.9g}\n", metric.name, evaluation.values[i]);
   }
   if (options.json) fmt::print("{}\n", json.dump(2));
+}
+
+void add_viewing_options(CLI::App& command, MetricSettings& settings) {
+  const auto add = [&](const char* flag, float& value, const char* type, const char* description,
+                       double low, double high) {
+    command.add_option(flag, value, description)
+        ->type_name(type)
+        ->group("Viewing")
+        ->check(number_between(low, high))
+        ->capture_default_str();
+  };
+  YeeSettings& yee = settings.yee;
+  add("--ppd", settings.pixels_per_degree, "N",
+      "Pixels per degree, for FLIP; the default is 3840 pixels\n"
+      "over 0.7 m seen from 0.7 m",
+      5, 1000);
+  add("--yee-fov", yee.field_of_view, "DEGREES", "Yee: field of view of the image's width", 0.1,
+      89.9);
+  add("--yee-gamma", yee.gamma, "G", "Yee: gamma of the display", 0.1, 10);
+  add("--yee-luminance", yee.luminance, "L", "Yee: luminance of white in cd/m^2", 0.01, 1e6);
+  add("--yee-colour-factor", yee.colour_factor, "C", "Yee: weight of the colour test", 0, 1);
+  command.add_flag("--yee-luminance-only", yee.luminance_only, "Yee: no colour test")
+      ->group("Viewing");
 }
 
 }  // namespace
@@ -58,6 +120,9 @@ void add_metrics_command(CLI::App& program, RunCommand& run) {
       ->type_name("")
       ->required();
   command->add_flag("--json", options->json, "Print a JSON object instead of lines");
+  command->add_option("--maps", options->maps, "Folder for maps of the errors; made if missing")
+      ->type_name("DIR");
+  add_viewing_options(*command, options->settings);
   command->callback([options, &run] { run = [options] { run_metrics(*options); }; });
 }
 

@@ -7,7 +7,7 @@
 namespace lockstep {
 namespace {
 
-constexpr double kDarkest = 0.01;             // keeps relMSE finite where the reference is black
+constexpr double kDarkest = 0.01;             // keeps errors finite where images are black
 constexpr std::size_t kPixelsPerTrim = 1000;  // one pixel in this many is left out
 
 double mean(const std::vector<double>& values) {
@@ -30,14 +30,16 @@ std::vector<double> relative_errors(const Image& reference, const Image& test) {
 
 }  // namespace
 
-double rmse(const Image& reference, const Image& test) {
+double mse(const Image& reference, const Image& test) {
   double sum = 0.0;
   for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
     const double d = double(test.pixels[i]) - double(reference.pixels[i]);
     sum += d * d;
   }
-  return std::sqrt(sum / double(std::max<std::size_t>(1, reference.pixels.size())));
+  return sum / double(std::max<std::size_t>(1, reference.pixels.size()));
 }
+
+double rmse(const Image& reference, const Image& test) { return std::sqrt(mse(reference, test)); }
 
 double relmse(const Image& reference, const Image& test) {
   return mean(relative_errors(reference, test));
@@ -51,6 +53,15 @@ double relmse_trimmed(const Image& reference, const Image& test) {
     errors.resize(kept);
   }
   return mean(errors);
+}
+
+double smape(const Image& reference, const Image& test) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+    const double r = reference.pixels[i], t = test.pixels[i];
+    sum += std::abs(t - r) / (std::abs(t) + std::abs(r) + kDarkest);
+  }
+  return sum / double(std::max<std::size_t>(1, reference.pixels.size()));
 }
 
 }  // namespace lockstep

@@ -51,14 +51,49 @@ TEST(Metrics, TrimmingASmallImageLeavesOutNothing) {
 
 TEST(Metrics, EqualImagesHaveNoError) {
   const Image image = constant(4, 4, 0.3f);
-  for (double value : evaluate_metrics(image, image)) EXPECT_EQ(value, 0.0);
+  const std::vector<double> values = evaluate_metrics(image, image);
+  ASSERT_EQ(values.size(), metrics().size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(values[i], metrics()[i].lower_is_better ? 0.0 : 1.0) << metrics()[i].name;
+  }
 }
 
 TEST(Metrics, TableHasTheKeysThatScriptsReadInOrder) {
-  ASSERT_GE(metrics().size(), 3u);
-  EXPECT_EQ(metrics()[0].name, "rmse");
-  EXPECT_EQ(metrics()[1].name, "relmse");
-  EXPECT_EQ(metrics()[2].name, "relmse_trimmed");
+  const std::vector<std::string_view> keys = {
+      "rmse",     "relmse", "relmse_trimmed", "yee_pixels", "yee_share",    "flip_ldr",
+      "flip_hdr", "mse",    "smape",          "ssim",       "low_pass_rmse"};
+  ASSERT_EQ(metrics().size(), keys.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) EXPECT_EQ(metrics()[i].name, keys[i]);
+}
+
+TEST(Metrics, MapsHoldWhatValuesSum) {
+  const Image reference = constant(20, 10, 0.3f);
+  Image test = reference;
+  for (int c = 0; c < 3; ++c) test.at(12, 4)[c] = 5.0f;
+  const Evaluation evaluation = evaluate(reference, test);
+  const auto value = [&](std::string_view name) {
+    for (std::size_t i = 0; i < metrics().size(); ++i) {
+      if (metrics()[i].name == name) return evaluation.values[i];
+    }
+    return -1.0;
+  };
+  EXPECT_EQ(value("flip_ldr"), mean_of(evaluation.flip_ldr));
+  EXPECT_EQ(value("flip_hdr"), mean_of(evaluation.flip_hdr));
+  EXPECT_NEAR(value("yee_share"), mean_of(evaluation.yee_failing), 1e-12);
+  EXPECT_EQ(value("yee_pixels"), 200.0 * value("yee_share"));
+  EXPECT_GT(value("flip_ldr"), 0.0);
+  EXPECT_GT(value("yee_pixels"), 0.0);
+  EXPECT_LT(value("ssim"), 1.0);
+}
+
+TEST(Metrics, OtherThanThreeChannelsAreRefused) {
+  const Image weights(4, 2, 1);
+  try {
+    evaluate_metrics(weights, weights, "a.exr", "b.exr");
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("a.exr: 1 channels"), std::string::npos);
+  }
 }
 
 TEST(Metrics, DifferentSizesAreNamed) {

@@ -1,0 +1,24 @@
+// What a display shows of linear images, and maps of values as images for people.
+#pragma once
+
+#include "core/image.h"
+
+#include <cstdint>
+
+namespace lockstep {
+
+// IEC 61966-2-1 both ways, for values in [0, 1].
+float srgb_from_linear(float value);
+float linear_from_srgb(float value);
+
+// The 8-bit sRGB code of a linear value: what an image file of it would hold.
+std::uint8_t display_code(float linear);
+
+// 0.2126 R + 0.7152 G + 0.0722 B of the sRGB values in [0, 1], one channel: Rec. 709 luma.
+Image display_luma(const Image& image);
+
+// A one-channel map in [0, 1] in the colours of matplotlib's magma: black, purple, orange, cream.
+// Linear, so that an 8-bit file of it shows them.
+Image magma(const Image& map);
+
+}  // namespace lockstep

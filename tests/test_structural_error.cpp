@@ -1,0 +1,250 @@
+// Low-pass RMSE, SSIM and the spectrum of errors on images with known answers.
+#include "experiments/display_image.h"
+#include "experiments/error_spectrum.h"
+#include "experiments/separable_filter.h"
+#include "experiments/squared_error.h"
+#include "experiments/structural_error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace lockstep {
+namespace {
+
+constexpr std::pair<int, int> kOddSizes[] = {{1, 1}, {1, 300}, {300, 1}, {7, 5}, {11, 12}};
+
+Image constant(int width, int height, float value) {
+  Image image(width, height, 3);
+  for (float& v : image.pixels) v = value;
+  return image;
+}
+
+// Grey noise of mean `mean` and standard deviation `deviation`.
+Image grey_noise(int width, int height, float mean, float deviation, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal(mean, deviation);
+  Image image(width, height, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+    image.pixels[i] = image.pixels[i + 1] = image.pixels[i + 2] = normal(random);
+  }
+  return image;
+}
+
+// mean + amplitude cos(2 pi (fx x + fy y)) in all channels.
+Image wave(int width, int height, double fx, double fy, double amplitude, double mean = 0.0) {
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double value = mean + amplitude * std::cos(2.0 * std::numbers::pi * (fx * x + fy * y));
+      for (int c = 0; c < 3; ++c) image.at(x, y)[c] = float(value);
+    }
+  }
+  return image;
+}
+
+TEST(SeparableFilter, IsTheSumOverAllPairsOfWeights) {
+  const std::vector<float> across = {0.1f, -0.2f, 0.5f, 0.3f, 0.05f}, down = {0.7f, 0.2f, -0.4f};
+  std::mt19937 random(1);
+  Image image(37, 150, 2);  // more rows than a strip has
+  for (float& v : image.pixels) v = float(random() % 1000) / 1000.0f;
+  const Image result = separable_filter(image, across, down);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      double sum[2] = {};
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -2; i <= 2; ++i) {
+          const double weight =
+              double(across[std::size_t(i + 2)]) * double(down[std::size_t(j + 1)]);
+          const float* pixel = image.at(std::clamp(x + i, 0, 36), std::clamp(y + j, 0, 149));
+          for (int c = 0; c < 2; ++c) sum[c] += weight * double(pixel[c]);
+        }
+      }
+      for (int c = 0; c < 2; ++c) ASSERT_NEAR(result.at(x, y)[c], sum[c], 1e-6) << x << ' ' << y;
+    }
+  }
+}
+
+TEST(DisplayImage, CodesAreThoseThatFilesHold) {
+  for (int code = 0; code < 256; ++code) {
+    EXPECT_EQ(display_code(linear_from_srgb(float(code) / 255.0f)), code);
+  }
+  EXPECT_EQ(display_code(-1.0f), 0);
+  EXPECT_EQ(display_code(7.0f), 255);
+}
+
+TEST(DisplayImage, MagmaGetsBrighter) {
+  Image map(101, 1, 1);
+  for (int x = 0; x <= 100; ++x) *map.at(x, 0) = float(x) / 100.0f;
+  const Image luma = display_luma(magma(map));
+  for (int x = 1; x <= 100; ++x) EXPECT_GT(*luma.at(x, 0), *luma.at(x - 1, 0)) << x;
+  EXPECT_LT(*luma.at(0, 0), 0.01f);
+  EXPECT_GT(*luma.at(100, 0), 0.9f);
+}
+
+TEST(SquaredError, MseIsTheSquareOfRmse) {
+  const Image p = grey_noise(20, 10, 0.5f, 0.2f, 1), q = grey_noise(20, 10, 0.5f, 0.2f, 2);
+  EXPECT_NEAR(mse(p, q), rmse(p, q) * rmse(p, q), 1e-12);
+  EXPECT_NEAR(mse(p, q), 2 * 0.04, 0.02);
+}
+
+TEST(SquaredError, SmapeIsRelativeToBoth) {
+  Image p = constant(2, 1, 0.0f), q = p;
+  p.at(0, 0)[0] = 1.0f;
+  q.at(0, 0)[0] = 3.0f;  // 2 / 4.01 in one of six values
+  EXPECT_NEAR(smape(p, q), 2.0 / 4.01 / 6.0, 1e-12);
+  EXPECT_EQ(smape(p, q), smape(q, p));
+  EXPECT_EQ(smape(p, p), 0.0);
+}
+
+TEST(LowPassRmse, OfAnOffsetIsTheOffset) {
+  for (const auto& [width, height] : kOddSizes) {
+    const Image image = grey_noise(width, height, 0.5f, 0.1f, 3);
+    Image test = image;
+    for (float& v : test.pixels) v += 0.25f;
+    EXPECT_NEAR(low_pass_rmse(image, test), 0.25, 1e-5);
+    EXPECT_EQ(low_pass_rmse(image, image), 0.0);
+  }
+}
+
+TEST(LowPassRmse, OfACheckerboardIsNearZero) {
+  const Image reference = constant(96, 96, 0.5f);
+  Image test = reference;
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 96; ++x) {
+      for (int c = 0; c < 3; ++c) test.at(x, y)[c] += (x + y) % 2 ? 0.1f : -0.1f;
+    }
+  }
+  EXPECT_NEAR(rmse(reference, test), 0.1, 1e-6);
+  EXPECT_LT(low_pass_rmse(reference, test), 0.002);
+}
+
+TEST(LowPassRmse, LowersWhiteNoiseByTheKernelsEnergy) {
+  // The variance falls by the sum of squares of the weights, 1 / (4 pi sigma^2) with sigma = 4.
+  const Image reference = constant(512, 512, 0.0f);
+  const Image test = grey_noise(512, 512, 0.0f, 1.0f, 4);
+  const double expected = 1.0 / std::sqrt(4.0 * std::numbers::pi * 16.0);
+  EXPECT_NEAR(low_pass_rmse(reference, test), expected, 0.06 * expected);
+}
+
+TEST(Ssim, OfEqualImagesIsOne) {
+  for (const auto& [width, height] : kOddSizes) {
+    const Image image = grey_noise(width, height, 0.5f, 0.2f, 5);
+    EXPECT_EQ(ssim(image, image), 1.0);
+  }
+}
+
+TEST(Ssim, OfTwoGreysComparesTheirMeans) {
+  // Nothing varies: (2 p q + C1) / (p^2 + q^2 + C1).
+  const float p = 0.3f, q = 0.6f;
+  const double expected = (2.0 * 0.3 * 0.6 + 1e-4) / (0.09 + 0.36 + 1e-4);
+  for (const auto& [width, height] : kOddSizes) {
+    EXPECT_NEAR(ssim(constant(width, height, linear_from_srgb(p)),
+                     constant(width, height, linear_from_srgb(q))),
+                expected, 1e-4);
+  }
+}
+
+TEST(Ssim, OfOppositeTexturesIsNegative) {
+  Image p(64, 64, 3), q(64, 64, 3);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        p.at(x, y)[c] = linear_from_srgb((x + y) % 2 ? 0.7f : 0.3f);
+        q.at(x, y)[c] = linear_from_srgb((x + y) % 2 ? 0.3f : 0.7f);
+      }
+    }
+  }
+  // Variances 0.04, covariance -0.04, equal means.
+  EXPECT_NEAR(ssim(p, q), (-0.08 + 9e-4) / (0.08 + 9e-4), 1e-3);
+}
+
+TEST(Ssim, FallsWithNoise) {
+  const Image reference = wave(64, 64, 0.05, 0.03, 0.2, 0.4);
+  double last = 1.0;
+  for (float deviation : {0.01f, 0.03f, 0.1f}) {
+    const Image noise = grey_noise(64, 64, 0.0f, deviation, 6);
+    Image test = reference;
+    for (std::size_t i = 0; i < test.pixels.size(); ++i) test.pixels[i] += noise.pixels[i];
+    const double value = ssim(reference, test);
+    EXPECT_LT(value, last - 0.01);
+    last = value;
+  }
+}
+
+TEST(Spectrum, OfWhiteNoiseIsItsVariance) {
+  const Image reference = constant(240, 200, 1.0f);
+  const Image test = grey_noise(240, 200, 3.0f, 0.5f, 7);
+  const std::vector<double> spectrum = radial_spectrum(reference, test, 20);
+  ASSERT_EQ(spectrum.size(), 20u);
+  for (std::size_t i = 0; i < spectrum.size(); ++i) {
+    // A ring has about 240 * 200 pi / 4 (2 i + 1) / 400 frequencies, half of them independent; the
+    // power at each has a standard deviation of its mean.
+    const double independent = 240.0 * 200.0 * std::numbers::pi / 4.0 * (2.0 * double(i) + 1) / 800;
+    EXPECT_NEAR(spectrum[i], 0.25, 0.25 * 4.5 / std::sqrt(independent)) << i;
+  }
+}
+
+TEST(Spectrum, OfAWaveIsOneRing) {
+  for (const auto& [width, height] : {std::pair{80, 80}, {81, 57}, {64, 300}}) {
+    const double fx = 11.0 / width, fy = 9.0 / height;
+    const std::vector<double> spectrum =
+        radial_spectrum(constant(width, height, 2.0f), wave(width, height, fx, fy, 0.3), 32);
+    const std::size_t ring = std::size_t(std::hypot(fx, fy) * 64.0);
+    double total = 0.0;
+    for (double power : spectrum) total += power;
+    EXPECT_GT(spectrum[ring], 0.999 * total) << width;
+    EXPECT_GT(total, 0.01);
+  }
+}
+
+TEST(Spectrum, ObeysParseval) {
+  // One ring holds frequencies up to 1/2 but zero: its mean power times their number is the sum
+  // of squares of a wave among them.
+  const int width = 48, height = 36;
+  double frequencies = 0.0;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double f = std::hypot(double(std::min(x, width - x)) / width,
+                                  double(std::min(y, height - y)) / height);
+      frequencies += f > 0.0 && f <= 0.5;
+    }
+  }
+  const Image reference = constant(width, height, 0.0f);
+  for (double columns : {0.0, 5.0, 24.0}) {  // 24: the highest frequency of a row, on its own
+    const Image test =
+        wave(width, height, columns / width, columns == 24.0 ? 0.0 : 7.0 / height, 1.0);
+    const double squares = mse(reference, test) * width * height;
+    EXPECT_NEAR(radial_spectrum(reference, test, 1)[0] * frequencies, squares, 1e-3 * squares)
+        << columns;
+  }
+}
+
+TEST(Spectrum, IsOfLuminance) {
+  const Image reference = constant(32, 32, 0.0f);
+  const Image noise = grey_noise(32, 32, 0.0f, 1.0f, 8);
+  const double white = radial_spectrum(reference, noise, 1)[0];
+  const double weights[] = {0.2126, 0.7152, 0.0722};
+  for (std::size_t c = 0; c < 3; ++c) {
+    Image test = reference;
+    for (std::size_t i = c; i < test.pixels.size(); i += 3) test.pixels[i] = noise.pixels[i];
+    EXPECT_NEAR(radial_spectrum(reference, test, 1)[0], weights[c] * weights[c] * white, 1e-6);
+  }
+}
+
+TEST(Spectrum, TakesImagesOfAnySize) {
+  for (const auto& [width, height] : kOddSizes) {
+    const std::vector<double> spectrum = radial_spectrum(
+        constant(width, height, 0.0f), grey_noise(width, height, 0.0f, 1.0f, 9), 16);
+    ASSERT_EQ(spectrum.size(), 16u);
+    for (double power : spectrum) EXPECT_TRUE(std::isfinite(power) && power >= 0.0);
+  }
+  const std::vector<double> offset = radial_spectrum(constant(9, 9, 0.0f), constant(9, 9, 3.0f), 4);
+  for (double power : offset) EXPECT_NEAR(power, 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace lockstep
