@@ -15,14 +15,14 @@ namespace {
 constexpr std::uint32_t seed = 1;
 constexpr int pixels = 256, samples = 4, count = pixels * samples;
 
-void sample(benchmark::State& loop, const Kernel& kernel, const char* text) {
+void sample(benchmark::State& loop, const Kernel& kernel, const std::string& text) {
   std::vector<std::uint32_t> pixel(count + 16), number(count + 16);
   for (int i = 0; i < count; ++i) {
     pixel[size_t(i)] = std::uint32_t(i % pixels);
     number[size_t(i)] = std::uint32_t(i / pixels);
   }
   std::vector<float> u(count + 16), v(count + 16);
-  const SamplerState state = make_state(parse_sampler(text), seed);
+  const SamplerState state = make_state(parse_sampler(text), seed, {16, 16, 64});
   const SampleBatch batch{pixel.data(), number.data(), count, 0, samples};
   int pair = 0;
   for (auto _ : loop) {
@@ -34,9 +34,13 @@ void sample(benchmark::State& loop, const Kernel& kernel, const char* text) {
 }
 
 void register_all() {
+  std::vector<std::string> texts = sampler_names();
+  std::erase(texts, "rcs");  // a map is the image's
+  for (const char* offset : {"fresh", "constant"}) {
+    texts.push_back(fmt::format("rcs:weight=0.3,offset={}", offset));
+  }
   for (const Isa isa : available_isas()) {
-    for (const char* text : {"random", "owen", "cpt", "rcs:weight=0.3,offset=fresh",
-                             "rcs:weight=0.3,offset=constant"}) {
+    for (const std::string& text : texts) {
       for (const int width : {1, 4, 8, 16}) {
         const std::string label =
             fmt::format("sampling/{}/{}/width:{}/seed:{}", text, name(isa), width, seed);

@@ -26,7 +26,7 @@ struct ProfileOptions {
 
 SamplerSpec profiled_sampler(const ProfileOptions& options) {
   SamplerSpec sampler = parse_sampler(options.sampler);
-  if (!sampler.shared || sampler.perturbation == Perturbation::None) {
+  if (!sampler.shared() || sampler.perturbation == PerturbationId{}) {
     throw UsageError(fmt::format(
         "--sampler: {} has no weight to vary; choose one whose pixels leave a shared sequence, "
         "such as rcs",

@@ -37,7 +37,7 @@ void check_outputs(const RenderOptions& options, const SamplerSpec& sampler) {
   }
   if (!options.stats.empty()) check_writable(options.stats);
   if (options.weights.empty()) return;
-  if (sampler.weight_source != WeightSource::Map) {
+  if (!sampler.has_pilot()) {
     throw UsageError(fmt::format(
         "--weights: {} makes no weight map; use rcs or leave --weights out", to_string(sampler)));
   }

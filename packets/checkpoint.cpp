@@ -9,7 +9,7 @@ namespace lockstep {
 namespace {
 
 // Raise the number when RenderState or what a sample's value is changes.
-constexpr std::string_view magic = "lockstep film 2\n";
+constexpr std::string_view magic = "lockstep film 3\n";
 
 template <class T>
 void write(std::ostream& out, const T* data, std::size_t count) {
@@ -23,7 +23,7 @@ void read(std::istream& in, T* data, std::size_t count) {
 // Visits everything that is kept, for reading and writing alike.
 template <class S, class F>
 void for_each_part(S& state, F f) {
-  for (auto* film : {&state.pilot, &state.image}) {
+  for (auto* film : {&state.pilot, &state.half_pilot, &state.image}) {
     f(&film->samples, 1);
     f(film->sums.data(), film->sums.size());
   }

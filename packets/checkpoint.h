@@ -7,9 +7,10 @@
 
 namespace lockstep {
 
-// All that a render has computed: the films of the pilot and of the image, and what they cost.
+// All that a render has computed: the films of the pilot, of its first half and of the image, and
+// what they cost.
 struct RenderState {
-  Film pilot, image;
+  Film pilot, half_pilot, image;
   PassTotals totals;
   double wall_seconds = 0.0;
 };

@@ -32,6 +32,17 @@ Image mean(const Film& a, const Film& b) {
   });
 }
 
+Image variance_of_mean(const Film& film, const Film& part) {
+  return make_image(film, [&](std::size_t at, std::size_t c) {
+    const double n = film.sums[at + 3], first = part.sums[at + 3], second = n - first;
+    if (first < 1.0 || second < 1.0) return 0.0;
+    const double difference =
+        part.sums[at + c] / first - (film.sums[at + c] - part.sums[at + c]) / second;
+    // Var(difference) = s^2 (1 / first + 1 / second), Var(mean) = s^2 / n.
+    return difference * difference * first * second / (n * n);
+  });
+}
+
 Image interpolate(const Film& a, const Film& b, const Image& weights) {
   return make_image(a, [&](std::size_t at, std::size_t c) {
     const double w = double(weights.pixels[at / 4]);

@@ -26,6 +26,10 @@ Image mean(const Film& film);
 // The mean over both films' samples together: sample-count weighted, hence unbiased.
 Image mean(const Film& a, const Film& b);
 
+// The variance of mean(film), by channel, from the difference of the first part of its samples to
+// the others: one degree of freedom, so smooth it. 0 where a part has no samples.
+Image variance_of_mean(const Film& film, const Film& part);
+
 // w a + (1 - w) b per pixel of the films' means, by a one-channel map of w. Biased where w depends
 // on a.
 Image interpolate(const Film& a, const Film& b, const Image& weights);

@@ -16,7 +16,7 @@
 
 namespace lockstep {
 
-inline constexpr int tile_size = 16;  // pixels along each side
+inline constexpr int tile_size = share_tile;  // pixels along each side
 
 struct PathSettings {
   int depth = 5;

@@ -15,18 +15,22 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 typedef float Float4 __attribute__((vector_size(16)));
 typedef double Double4 __attribute__((vector_size(32)));
 
-// Blocks of lanes.x * lanes.y pixels and lanes.samples samples, one after the other.
+// Blocks of lanes.x * lanes.y pixels and lanes.samples samples, one after the other. With interleaved
+// sequences the pixels of a block are those `interleave` apart, which share one.
 inline void order_paths(PathOrder& o) {
+  const int step = o.interleave, block_x = o.lanes.x * step, block_y = o.lanes.y * step;
   int n = 0;
   for (int s0 = 0; s0 < o.samples; s0 += o.lanes.samples) {
     const int s1 = std::min(s0 + o.lanes.samples, o.samples);
-    for (int y0 = 0; y0 < o.height; y0 += o.lanes.y) {
-      const int y1 = std::min(y0 + o.lanes.y, o.height);
-      for (int x0 = 0; x0 < o.width; x0 += o.lanes.x) {
-        const int x1 = std::min(x0 + o.lanes.x, o.width);
-        for (int y = y0; y < y1; ++y) {
-          for (int x = x0; x < x1; ++x) {
-            for (int s = s0; s < s1; ++s, ++n) o.x[n] = x, o.y[n] = y, o.sample[n] = s;
+    for (int y0 = 0; y0 < o.height; y0 += block_y) {
+      const int y1 = std::min(y0 + block_y, o.height);
+      for (int x0 = 0; x0 < o.width; x0 += block_x) {
+        const int x1 = std::min(x0 + block_x, o.width);
+        for (int group = 0; group < step * step; ++group) {
+          for (int y = y0 + group / step; y < y1; y += step) {
+            for (int x = x0 + group % step; x < x1; x += step) {
+              for (int s = s0; s < s1; ++s, ++n) o.x[n] = x, o.y[n] = y, o.sample[n] = s;
+            }
           }
         }
       }
@@ -45,8 +49,9 @@ void begin_paths(const TileJob& job, Wave& wave) {
   PathOrder& o = wave.order;
   const int width = job.x1 - job.x0, height = job.y1 - job.y0;
   if (o.width != width || o.height != height || o.samples != int(job.samples) ||
-      o.lanes != job.lanes) {
+      o.lanes != job.lanes || o.interleave != job.sampler->interleave) {
     o.width = width, o.height = height, o.samples = int(job.samples), o.lanes = job.lanes;
+    o.interleave = job.sampler->interleave;
     order_paths(o);
   }
   PathTable& paths = wave.paths;

@@ -25,7 +25,7 @@ constexpr std::uint32_t most_samples = 1u << 24;  // that a render for a time ta
 
 // How many samples go to the pilot. A render for a time does not know its spp: it takes 4.
 int pilot_samples(const SamplerSpec& sampler, const RenderSettings& settings) {
-  if (sampler.weight_source != WeightSource::Map) return 0;
+  if (!sampler.has_pilot()) return 0;
   if (settings.time_seconds > 0.0) return sampler.pilot > 0 ? sampler.pilot : 4;
   const int wanted = sampler.pilot > 0 ? sampler.pilot : std::max(1, settings.spp / 4);
   return std::min(wanted, settings.spp);
@@ -37,11 +37,10 @@ std::uint32_t stream_seed(std::uint32_t seed, std::uint32_t stream) {
 }
 
 // The pilot: every pixel has its own sequence, of the kind that the image's pixels share.
-SamplerState pilot_state(const SamplerSpec& sampler, const RenderSettings& settings) {
-  SamplerState state;
-  state.seed = stream_seed(settings.seed, 1);
-  state.sequence = sampler.sequence;
-  return state;
+SamplerSpec pilot_sampler(const SamplerSpec& sampler) {
+  SamplerSpec pilot;
+  pilot.sequence = sampler.sequence;
+  return pilot;
 }
 
 RayCounts ray_counts(const TileCounts& counts) {
@@ -83,6 +82,7 @@ class Renderer {
     pilot_spp_ = pilot_samples(sampler, settings);
     state_.image = Film(film.width, film.height);
     if (pilot_spp_ > 0) state_.pilot = Film(film.width, film.height);
+    if (sampler.weight_source == WeightSource::Auto) state_.half_pilot = state_.pilot;
   }
 
   RenderResult run() {
@@ -91,12 +91,13 @@ class Renderer {
                                       std::size_t(pass_.threads));
     restore();
     RenderResult result;
-    SamplerState state = make_state(sampler_, stream_seed(settings_.seed, 0));
-    double weight = state.shared ? double(state.weight) : 1.0;
+    SamplerState state = make_state(sampler_, stream_seed(settings_.seed, 0),
+                                    plan(std::uint32_t(settings_.spp - pilot_spp_)));
+    double weight = sampler_.shared() ? double(state.weight) : 1.0;
     if (pilot_spp_ > 0) {
       render_pilot();
       const double before = thread_cpu_seconds();
-      result.weights = make_weights(mean(state_.pilot), {sampler_.c, sampler_.t, sampler_.filter});
+      result.weights = weights();
       weight = mean_weight(*result.weights);
       weights_seconds_ = thread_cpu_seconds() - before;
       state_.totals.cpu_seconds += weights_seconds_;
@@ -116,10 +117,33 @@ class Renderer {
  private:
   std::uint32_t samples_done() const { return state_.pilot.samples + state_.image.samples; }
 
+  // A render for a time does not know its samples: it plans for 16, and again for as many.
+  SamplePlan plan(std::uint32_t samples) const {
+    const FilmDescription& film = scene_.description().film;
+    const std::uint32_t planned = settings_.time_seconds > 0.0 ? SamplePlan().samples : samples;
+    return {film.width, film.height, planned};
+  }
+
   void render_pilot() {
-    const SamplerState state = pilot_state(sampler_, settings_);
+    const SamplerState state = make_state(
+        pilot_sampler(sampler_), stream_seed(settings_.seed, 1), plan(std::uint32_t(pilot_spp_)));
     pass_.sampler = &state;
+    if (sampler_.weight_source == WeightSource::Auto && state_.half_pilot.samples == 0) {
+      render_to(state_.pilot, std::uint32_t(pilot_spp_ / 2));
+      state_.half_pilot = state_.pilot;
+    }
     render_to(state_.pilot, std::uint32_t(pilot_spp_));
+  }
+
+  Image weights() const {
+    const Image pilot = mean(state_.pilot);
+    if (sampler_.weight_source == WeightSource::Map) {
+      return make_weights(pilot, {sampler_.c, sampler_.t, sampler_.filter});
+    }
+    // A render for a time does not know: as if the image got as many samples as the pilot.
+    const int samples = settings_.time_seconds > 0.0 ? pilot_spp_ : settings_.spp - pilot_spp_;
+    return make_auto_weights(pilot, variance_of_mean(state_.pilot, state_.half_pilot),
+                             double(pilot_spp_) / std::max(samples, 1));
   }
 
   // Passes of at most 64 samples, after which the film is whole again: shorter ones where it is
@@ -169,7 +193,8 @@ class Renderer {
     return fmt::format("scene {:016x} {} {}x{} seed {} depth {} roulette {} pilot {} isa {}",
                        scene_.fingerprint(), to_string(sampler_), film.width, film.height,
                        settings_.seed, settings_.depth, settings_.roulette_depth, pilot_spp_,
-                       name(settings_.isa));
+                       name(settings_.isa)) +
+           (is_planned(sampler_) ? fmt::format(" samples {}", settings_.spp) : "");
   }
   void restore() {
     if (!settings_.resume_file.empty()) load_checkpoint(settings_.resume_file, key(), state_);

@@ -25,6 +25,7 @@ struct alignas(64) Float3Array {
 struct alignas(64) PathOrder {
   int width = 0, height = 0, samples = 0;  // of the job it was made for
   LaneLayout lanes;
+  int interleave = 0;  // SamplerState::interleave
   int count = 0;
   IntArray x, y, sample;
 };

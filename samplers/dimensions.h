@@ -14,5 +14,6 @@ constexpr int sample_pair(int bounce, Purpose purpose) { return 1 + 4 * bounce +
 
 // Pairs are numbered below 4096 (see random_point).
 inline constexpr int max_depth = 1020;
+inline constexpr int max_pairs = 4096;
 
 }  // namespace lockstep

@@ -1,14 +1,44 @@
 #include "samplers/make_state.h"
 
-namespace lockstep {
+#include "samplers/dimensions.h"
+#include "samplers/perturbations.h"
+#include "samplers/sequences.h"
 
-SamplerState make_state(const SamplerSpec& spec, std::uint32_t seed) {
+#include <algorithm>
+#include <bit>
+
+namespace lockstep {
+namespace {
+
+// 2^-m, for 4^m samples or more: the first 4^m points of a (0, 2)-sequence fill cells of that side.
+float cell_side(std::uint32_t samples) {
+  float side = 1.0f;
+  for (; samples >= 4; samples /= 4) side *= 0.5f;
+  return side;
+}
+
+}  // namespace
+
+SamplerState make_state(const SamplerSpec& spec, std::uint32_t seed, const SamplePlan& plan) {
   SamplerState state;
   state.seed = seed;
-  state.shared = spec.shared;
+  state.share = spec.share;
+  state.shared_pairs = !spec.shared() ? 0 : spec.pairs > 0 ? spec.pairs : max_pairs;
+  state.interleave = spec.interleave;
   state.sequence = spec.sequence;
   state.perturbation = spec.perturbation;
-  state.weight = spec.perturbation == Perturbation::None ? 0.0f : spec.weight;
+  state.mix = spec.mix;
+  state.samples = std::max(plan.samples, 1u);
+  state.width = plan.width;
+  state.pixel_bits = std::bit_width(unsigned(std::max(plan.width, plan.height) - 1));
+  if (const auto table = Sequences::infos()[std::size_t(spec.sequence)].table) {
+    state.table = table();
+  }
+  if (spec.perturbation == PerturbationId{}) return state;
+  state.weight = spec.weight_source == WeightSource::Cells ? cell_side(state.samples) : spec.weight;
+  if (const auto mask = Perturbations::infos()[std::size_t(spec.perturbation)].mask) {
+    state.mask = mask();
+  }
   return state;
 }
 

@@ -1,10 +1,13 @@
 #include "samplers/sampler_spec.h"
 
 #include "core/error.h"
+#include "samplers/perturbations.h"
+#include "samplers/presets.h"
+#include "samplers/sequences.h"
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -12,71 +15,45 @@
 namespace lockstep {
 namespace {
 
-struct Preset {
-  std::string_view summary, paper;
-  SamplerSpec spec;
-};
-
-SamplerSpec preset(std::string name, bool shared, Sequence sequence, Perturbation perturbation,
-                   WeightSource source) {
-  SamplerSpec s;
-  s.name = std::move(name);
-  s.shared = shared;
-  s.sequence = sequence;
-  s.perturbation = perturbation;
-  s.weight_source = source;
-  return s;
-}
-
-const std::array<Preset, 4>& presets() {
-  using enum Perturbation;
-  static const std::array<Preset, 4> list{{
-      {"independent random numbers in every pixel", "plain Monte Carlo",
-       preset("random", false, Sequence::Random, None, WeightSource::Constant)},
-      {"an Owen-scrambled Sobol sequence of its own in every pixel, padded in pairs",
-       "Burley 2020, Practical Hash-based Owen Scrambling",
-       preset("owen", false, Sequence::Owen, None, WeightSource::Constant)},
-      {"one sequence for all pixels", "Sadeghi, Chen and Jensen 2009, Coherent Path Tracing",
-       preset("cpt", true, Sequence::Owen, None, WeightSource::Constant)},
-      {"one sequence, left by each pixel as far as its weight from a pilot image says",
-       "Staal and Hachisuka, Randomized Coherent Sampling",
-       preset("rcs", true, Sequence::Owen, Constant, WeightSource::Map)},
-  }};
-  return list;
-}
-
 // The words an option may take, in the order of their enum.
 template <class E>
-struct Choices;
+std::vector<std::string_view> words();
 template <>
-struct Choices<Sequence> {
-  static constexpr std::array<std::string_view, 2> words{"random", "owen"};
-};
+std::vector<std::string_view> words<Share>() {
+  return {"pixel", "tile", "image"};
+}
 template <>
-struct Choices<Perturbation> {
-  static constexpr std::array<std::string_view, 3> words{"none", "fresh", "constant"};
-};
+std::vector<std::string_view> words<Mix>() {
+  return {"add", "xor"};
+}
 template <>
-struct Choices<WeightFilter> {
-  static constexpr std::array<std::string_view, 3> words{"none", "gaussian", "median"};
-};
+std::vector<std::string_view> words<WeightFilter>() {
+  return {"none", "gaussian", "median"};
+}
 template <>
-struct Choices<Combine> {
-  static constexpr std::array<std::string_view, 2> words{"add", "weight"};
-};
-
-template <class E>
-std::string joined() {
-  return fmt::format("{}", fmt::join(Choices<E>::words, ", "));
+std::vector<std::string_view> words<Combine>() {
+  return {"add", "weight"};
+}
+template <>
+std::vector<std::string_view> words<SequenceId>() {
+  std::vector<std::string_view> names;
+  for (const SequenceInfo& info : Sequences::infos()) names.push_back(info.name);
+  return names;
+}
+template <>
+std::vector<std::string_view> words<PerturbationId>() {
+  std::vector<std::string_view> names;
+  for (const PerturbationInfo& info : Perturbations::infos()) names.push_back(info.name);
+  return names;
 }
 
 template <class E>
 E parse_choice(std::string_view key, std::string_view value) {
-  for (std::size_t i = 0; i < Choices<E>::words.size(); ++i) {
-    if (Choices<E>::words[i] == value) return E(i);
-  }
-  throw UsageError(
-      fmt::format("sampler option {}={} is unknown; choose from {}", key, value, joined<E>()));
+  const auto choices = words<E>();
+  const auto found = std::find(choices.begin(), choices.end(), value);
+  if (found != choices.end()) return E(found - choices.begin());
+  throw UsageError(fmt::format("sampler option {}={} is unknown; choose from {}", key, value,
+                               fmt::join(choices, ", ")));
 }
 
 float parse_number(std::string_view key, std::string_view value) {
@@ -97,61 +74,93 @@ int parse_count(std::string_view key, std::string_view value) {
   return int(x);
 }
 
-// One option: its key, what it applies to, its text and how to set it.
+// What an option needs to have an effect.
+enum class Needs { Nothing, Sharing, Pilot, Map };
+
+// One option: its key, what it takes, what it does, how to set it and its text.
 struct Option {
-  std::string_view key, values, meaning;
-  bool map_only;  // says how the map of weights is made or used
+  std::string_view key;
+  std::string values;
+  std::string_view meaning;
+  Needs needs;
   void (*set)(SamplerSpec&, std::string_view key, std::string_view value);
   std::string (*get)(const SamplerSpec&);
 };
 
 template <class E>
 std::string word(E value) {
-  return std::string(Choices<E>::words[size_t(value)]);
+  return std::string(words<E>()[size_t(value)]);
+}
+template <class E>
+std::string alternatives() {
+  return fmt::format("{}", fmt::join(words<E>(), "|"));
 }
 std::string number(float value) { return fmt::format("{}", value); }
 
-const std::array<Option, 8>& options() {
-  using S = SamplerSpec;
-  using T = std::string_view;
-  static const std::array<Option, 8> list{{
-      {"sequence", "random|owen", "the sequence u_k", false,
-       [](S& s, T k, T v) { s.sequence = parse_choice<Sequence>(k, v); },
-       [](const S& s) { return word(s.sequence); }},
-      {"offset", "none|fresh|constant",
-       "the perturbation u_{i,k}: none, new for each k, or one per pixel", false,
-       [](S& s, T k, T v) { s.perturbation = parse_choice<Perturbation>(k, v); },
-       [](const S& s) { return word(s.perturbation); }},
-      {"weight", "map|0..1", "w: a map from a pilot, or one number for all pixels", false,
-       [](S& s, T k, T v) {
-         s.weight_source = v == "map" ? WeightSource::Map : WeightSource::Constant;
-         if (v != "map") s.weight = parse_number(k, v);
-       },
-       [](const S& s) { return s.weight_source == WeightSource::Map ? "map" : number(s.weight); }},
-      {"c", "number", "the map: w = min(1, c d) for relative difference d", true,
-       [](S& s, T k, T v) { s.c = parse_number(k, v); }, [](const S& s) { return number(s.c); }},
-      {"t", "number", "the map: w = 0 where d < t", true,
-       [](S& s, T k, T v) { s.t = parse_number(k, v); }, [](const S& s) { return number(s.t); }},
-      {"filter", "none|gaussian|median", "of the pilot, before differences are taken", true,
-       [](S& s, T k, T v) { s.filter = parse_choice<WeightFilter>(k, v); },
-       [](const S& s) { return word(s.filter); }},
-      {"pilot", "samples", "of the spp, taken by the pilot; 0: a quarter, at least 1", true,
-       [](S& s, T k, T v) { s.pilot = parse_count(k, v); },
-       [](const S& s) { return fmt::format("{}", s.pilot); }},
-      {"combine", "add|weight", "pilot and coherent image: by samples, or by w (biased)", true,
-       [](S& s, T k, T v) { s.combine = parse_choice<Combine>(k, v); },
-       [](const S& s) { return word(s.combine); }},
-  }};
-  return list;
+void set_weight(SamplerSpec& s, std::string_view key, std::string_view value) {
+  using enum WeightSource;
+  s.weight_source = value == "map" ? Map : value == "auto" ? Auto : value == "cells" ? Cells : Constant;
+  if (s.weight_source == Constant) s.weight = parse_number(key, value);
+}
+std::string get_weight(const SamplerSpec& s) {
+  switch (s.weight_source) {
+    case WeightSource::Map:
+      return "map";
+    case WeightSource::Auto:
+      return "auto";
+    case WeightSource::Cells:
+      return "cells";
+    case WeightSource::Constant:
+      break;
+  }
+  return number(s.weight);
+}
+void set_interleave(SamplerSpec& s, std::string_view key, std::string_view value) {
+  s.interleave = parse_count(key, value);
+  if (s.interleave != 1 && s.interleave != 2 && s.interleave != 4) {
+    throw UsageError(fmt::format("sampler option {}={} must be 1, 2 or 4", key, value));
+  }
 }
 
-const Preset& find_preset(std::string_view name) {
-  std::string known;
-  for (const Preset& p : presets()) {
-    if (p.spec.name == name) return p;
-    known += (known.empty() ? "" : ", ") + p.spec.name;
-  }
-  throw UsageError(fmt::format("unknown sampler '{}'; choose from {}", name, known));
+const std::vector<Option>& options() {
+  using S = SamplerSpec;
+  using T = std::string_view;
+  static const std::vector<Option> list{
+      {"sequence", alternatives<SequenceId>(), "the sequence u_k", Needs::Nothing,
+       [](S& s, T k, T v) { s.sequence = parse_choice<SequenceId>(k, v); },
+       [](const S& s) { return word(s.sequence); }},
+      {"share", alternatives<Share>(), "whose sequence it is: each pixel's, each tile's, everyone's",
+       Needs::Nothing, [](S& s, T k, T v) { s.share = parse_choice<Share>(k, v); },
+       [](const S& s) { return word(s.share); }},
+      {"pairs", "number", "pairs of dimensions that are shared, from the first; 0: all",
+       Needs::Sharing, [](S& s, T k, T v) { s.pairs = parse_count(k, v); },
+       [](const S& s) { return fmt::format("{}", s.pairs); }},
+      {"interleave", "1|2|4", "n: n x n sequences, pixels n apart share", Needs::Sharing,
+       set_interleave, [](const S& s) { return fmt::format("{}", s.interleave); }},
+      {"offset", alternatives<PerturbationId>(), "u_{i,k}, by which a pixel leaves the sequence",
+       Needs::Sharing, [](S& s, T k, T v) { s.perturbation = parse_choice<PerturbationId>(k, v); },
+       [](const S& s) { return word(s.perturbation); }},
+      {"mix", alternatives<Mix>(), "how: u_k + w u_{i,k}, or only digits below w, by XOR",
+       Needs::Sharing, [](S& s, T k, T v) { s.mix = parse_choice<Mix>(k, v); },
+       [](const S& s) { return word(s.mix); }},
+      {"weight", "map|auto|cells|0..1",
+       "w: a map from a pilot by c and t, or by its noise; the cells' side; a number",
+       Needs::Sharing, set_weight, get_weight},
+      {"c", "number", "the map: w = min(1, c d) for relative difference d", Needs::Map,
+       [](S& s, T k, T v) { s.c = parse_number(k, v); }, [](const S& s) { return number(s.c); }},
+      {"t", "number", "the map: w = 0 where d < t", Needs::Map,
+       [](S& s, T k, T v) { s.t = parse_number(k, v); }, [](const S& s) { return number(s.t); }},
+      {"filter", alternatives<WeightFilter>(), "of the pilot, before differences are taken",
+       Needs::Map, [](S& s, T k, T v) { s.filter = parse_choice<WeightFilter>(k, v); },
+       [](const S& s) { return word(s.filter); }},
+      {"pilot", "samples", "of the spp, taken by the pilot; 0: a quarter, at least 1", Needs::Pilot,
+       [](S& s, T k, T v) { s.pilot = parse_count(k, v); },
+       [](const S& s) { return fmt::format("{}", s.pilot); }},
+      {"combine", alternatives<Combine>(), "pilot and coherent image: by samples, or by w (biased)",
+       Needs::Pilot, [](S& s, T k, T v) { s.combine = parse_choice<Combine>(k, v); },
+       [](const S& s) { return word(s.combine); }},
+  };
+  return list;
 }
 
 const Option& apply_option(SamplerSpec& spec, std::string_view item) {
@@ -160,18 +169,43 @@ const Option& apply_option(SamplerSpec& spec, std::string_view item) {
     throw UsageError(fmt::format("sampler option '{}' needs the form key=value", item));
   }
   const std::string_view key = item.substr(0, equals), value = item.substr(equals + 1);
-  for (const Option& option : options()) {
-    if (option.key != key) continue;
-    if (!spec.shared) {
-      throw UsageError(
-          fmt::format("sampler {} has no option {}: its pixels share no sequence", spec.name, key));
-    }
-    option.set(spec, key, value);
-    return option;
-  }
   std::string known;
-  for (const Option& option : options()) known += fmt::format(" {}", option.key);
+  for (const Option& option : options()) {
+    if (option.key == key) {
+      option.set(spec, key, value);
+      return option;
+    }
+    known += fmt::format(" {}", option.key);
+  }
   throw UsageError(fmt::format("unknown sampler option '{}'; choose from{}", key, known));
+}
+
+// The options whose needs are not met by the others.
+void check_needs(const SamplerSpec& spec, std::string_view text, const Option& option,
+                 std::string_view item) {
+  const bool map = spec.weight_source == WeightSource::Map;
+  const char* remedy = option.needs >= Needs::Sharing && !spec.shared()
+                           ? "without a shared sequence; set share=image"
+                       : option.needs == Needs::Map && !map ? "without a map; set weight=map"
+                       : option.needs == Needs::Pilot && !spec.has_pilot()
+                           ? "without a pilot; set weight=map or weight=auto"
+                           : nullptr;
+  if (remedy) throw UsageError(fmt::format("{}: {} has no effect {}", text, item, remedy));
+}
+
+void check_weight(const SamplerSpec& spec, std::string_view text) {
+  const bool moves = spec.perturbation != PerturbationId{};
+  const SamplerSpec& base = find_preset(spec.name).spec;
+  if (!moves && spec.has_pilot()) {
+    throw UsageError(
+        fmt::format("{}: a weight map needs an offset to weigh; set offset=constant", text));
+  }
+  if (!moves && (spec.weight != base.weight || spec.weight_source == WeightSource::Cells)) {
+    throw UsageError(fmt::format("{}: a weight needs an offset to weigh; set offset=constant", text));
+  }
+  if (spec.weight_source == WeightSource::Constant && spec.weight > 1.0f) {
+    throw UsageError(fmt::format("{}: weight lies in [0, 1]; 1 is already independent", text));
+  }
 }
 
 }  // namespace
@@ -180,28 +214,17 @@ SamplerSpec parse_sampler(std::string_view text) {
   const std::size_t colon = text.find(':');
   SamplerSpec spec = find_preset(text.substr(0, colon)).spec;
   if (colon == std::string_view::npos) return spec;
-  std::string_view rest = text.substr(colon + 1), map_option;
+  std::string_view rest = text.substr(colon + 1);
+  std::vector<std::pair<const Option*, std::string_view>> given;
   while (true) {
     const std::size_t comma = rest.find(',');
-    if (apply_option(spec, rest.substr(0, comma)).map_only) map_option = rest.substr(0, comma);
+    const std::string_view item = rest.substr(0, comma);
+    given.emplace_back(&apply_option(spec, item), item);
     if (comma == std::string_view::npos) break;
     rest = rest.substr(comma + 1);
   }
-  if (spec.weight_source != WeightSource::Map && !map_option.empty()) {
-    throw UsageError(
-        fmt::format("{}: {} has no effect without a map; set weight=map", text, map_option));
-  }
-  if (spec.weight_source == WeightSource::Map && spec.perturbation == Perturbation::None) {
-    throw UsageError(
-        fmt::format("{}: a weight map needs an offset to weigh; set offset=fresh", text));
-  }
-  if (spec.perturbation == Perturbation::None &&
-      spec.weight != find_preset(spec.name).spec.weight) {
-    throw UsageError(fmt::format("{}: a weight needs an offset to weigh; set offset=fresh", text));
-  }
-  if (spec.weight_source == WeightSource::Constant && spec.weight > 1.0f) {
-    throw UsageError(fmt::format("{}: weight lies in [0, 1]; 1 is already independent", text));
-  }
+  for (const auto& [option, item] : given) check_needs(spec, text, *option, item);
+  check_weight(spec, text);
   return spec;
 }
 
@@ -218,27 +241,53 @@ std::string to_string(const SamplerSpec& spec) {
   return text;
 }
 
+std::vector<std::string> sampler_names() {
+  std::vector<std::string> names;
+  for (const Preset& p : presets()) names.push_back(p.spec.name);
+  return names;
+}
+
 std::string sampler_help() {
   std::string text;
   for (const Preset& p : presets()) {
-    text += fmt::format("  {:<8} {}\n           ({})\n", p.spec.name, p.summary, p.paper);
-    if (!p.spec.shared) continue;
+    text += fmt::format("  {:<10} {}\n             ({})\n", p.spec.name, p.summary, p.paper);
+    if (!p.spec.shared()) continue;
     std::string defaults;
-    const bool map = p.spec.weight_source == WeightSource::Map;
     for (const Option& o : options()) {
-      if (map || !o.map_only) defaults += fmt::format(" {}={}", o.key, o.get(p.spec));
+      const bool used = o.needs == Needs::Map     ? p.spec.weight_source == WeightSource::Map
+                        : o.needs == Needs::Pilot ? p.spec.has_pilot()
+                                                  : true;
+      if (used) defaults += fmt::format(" {}={}", o.key, o.get(p.spec));
     }
-    text += fmt::format("           defaults:{}\n", defaults);
+    text += fmt::format("             defaults:{}\n", defaults);
   }
-  text += "\nOptions of samplers that share a sequence, as in rcs:c=4,offset=constant\n";
+  text += "\nOptions, as in rcs:c=4,offset=fresh; all but the first two need a shared sequence\n";
   for (const Option& o : options()) {
-    text += fmt::format("  {:<8} {:<20} {}\n", o.key, o.values, o.meaning);
+    text += fmt::format("  {:<10} {}\n             {}\n", o.key, o.meaning, o.values);
+  }
+  text += "\nOffsets\n";
+  for (const PerturbationInfo& o : Perturbations::infos()) {
+    text += fmt::format("  {:<10} {}\n             ({})\n", o.name, o.summary, o.paper);
   }
   text +=
       "\nAs published: cpt:sequence=random and rcs:sequence=random,offset=fresh. The defaults keep "
       "a\n"
       "low-discrepancy sequence's stratification and have less error at equal time.\n";
   return text;
+}
+
+SequenceId sequence_named(std::string_view name) { return parse_choice<SequenceId>("sequence", name); }
+PerturbationId perturbation_named(std::string_view name) {
+  return parse_choice<PerturbationId>("offset", name);
+}
+std::string_view name(SequenceId sequence) { return words<SequenceId>()[size_t(sequence)]; }
+std::string_view name(PerturbationId perturbation) {
+  return words<PerturbationId>()[size_t(perturbation)];
+}
+
+bool is_planned(const SamplerSpec& spec) {
+  return Sequences::infos()[size_t(spec.sequence)].planned ||
+         spec.weight_source == WeightSource::Cells;
 }
 
 std::vector<std::string> split_sampler_list(std::string_view list) {

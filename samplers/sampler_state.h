@@ -9,15 +9,24 @@ namespace lockstep {
 
 struct SamplerState {
   std::uint32_t seed = 0;
-  bool shared = false;
-  Sequence sequence = Sequence::Random;
-  Perturbation perturbation = Perturbation::None;
-  float weight = 1.0f;             // w where there is no map
+  Share share = Share::Pixel;
+  int shared_pairs = 0;  // pairs from this one on are every pixel's own
+  int interleave = 1;    // pixels (x, y) and (x + interleave, y) share
+  SequenceId sequence{};
+  PerturbationId perturbation{};
+  Mix mix = Mix::Add;
+  float weight = 0.0f;             // w where there is no map
   const float* weights = nullptr;  // w per pixel, row by row
+  int width = 1;                   // of the image; pixels are numbered y * width + x
+  int pixel_bits = 1;              // of a pixel's x and y
+  std::uint32_t samples = 16;      // per pixel that are planned; a multiple of them is as good
+  const std::uint32_t* table = nullptr;  // the sequence's, if it has one
+  const std::uint32_t* mask = nullptr;   // the perturbation's, if it has one
 };
 
 // What a batch of values is for: samples of pixels (y * width + x), with sample numbers in
-// [first_sample, first_sample + samples). Arrays may be read up to a full packet past `count`.
+// [first_sample, first_sample + samples), all pixels in one tile of share_tile x share_tile. Arrays
+// may be read up to a full packet past `count`.
 struct SampleBatch {
   const std::uint32_t* pixel = nullptr;
   const std::uint32_t* sample = nullptr;
@@ -26,6 +35,8 @@ struct SampleBatch {
   int samples = 1;
 };
 
+inline constexpr int share_tile = 16;
 inline constexpr int max_samples_per_batch = 256;
+inline constexpr int max_interleave = 4;
 
 }  // namespace lockstep

@@ -1,14 +1,12 @@
 // The first two dimensions of Sobol's sequence, a (0, 2)-sequence in base 2, Owen-scrambled by a
-// hash and with shuffled order, for padding into as many 2-D pairs as a path needs
-// (Burley 2020, "Practical Hash-based Owen Scrambling").
+// hash (Burley 2020, "Practical Hash-based Owen Scrambling").
 //
 // Values are 32-bit binary fractions. Most of the work is done on their mirror image, where bit j
 // is the j-th digit behind the point.
 #pragma once
 
-#include "core/hash.h"
 #include "core/simd_bits.h"
-#include "core/vec.h"
+#include "samplers/fractions.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
@@ -37,14 +35,18 @@ LOCKSTEP_INLINE U mirrored_second_coordinate(U index) {
   return index;
 }
 
-// Point `index` of the sequence that `keys` select: x and y key the coordinates' scrambles, z the
-// order. Every aligned block of 2^m indices is a (0, m, 2)-net.
+// An order of the indices in which every aligned block of 2^m is one of the natural order.
 template <class U>
-LOCKSTEP_INLINE Vec2<FloatOf<U>> owen_sobol(U index, const Hash3<U>& keys) {
-  const U shuffled = reverse_bits(scramble_mirrored(reverse_bits(index), keys.z));
-  const U x = reverse_bits(scramble_mirrored(shuffled, keys.x));
-  const U y = reverse_bits(scramble_mirrored(mirrored_second_coordinate(shuffled), keys.y));
-  return {unit_float(x), unit_float(y)};
+LOCKSTEP_INLINE U shuffled_index(U index, U key) {
+  return reverse_bits(scramble_mirrored(reverse_bits(index), key));
+}
+
+// Point `index`, each coordinate scrambled by its key. Every aligned block of 2^m indices is a
+// (0, m, 2)-net.
+template <class U>
+LOCKSTEP_INLINE Fractions<U> scrambled_sobol(U index, U key_x, U key_y) {
+  return {reverse_bits(scramble_mirrored(index, key_x)),
+          reverse_bits(scramble_mirrored(mirrored_second_coordinate(index), key_y))};
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

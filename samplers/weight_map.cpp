@@ -88,9 +88,36 @@ Image make_weights(const Image& pilot, const WeightSettings& settings) {
   return weights;
 }
 
+Image make_auto_weights(const Image& pilot, const Image& variance, double variance_ratio) {
+  // Differences of one part in a hundred are just seen (Weber's law), above a darkest grey that
+  // displays show.
+  constexpr double seen = 0.01, darkest = 0.01;
+  const Image level = filter_pilot(pilot, WeightFilter::Gaussian);
+  // Twice: a variance from one difference is off by more than itself.
+  const Image smooth =
+      filter_pilot(filter_pilot(variance, WeightFilter::Gaussian), WeightFilter::Gaussian);
+  Image weights(pilot.width, pilot.height, 1);
+  for (int y = 0; y < pilot.height; ++y) {
+    for (int x = 0; x < pilot.width; ++x) {
+      double contrast = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        const double noise = std::sqrt(variance_ratio * double(smooth.at(x, y)[c]));
+        contrast = std::max(contrast, noise / (double(level.at(x, y)[c]) + darkest));
+      }
+      *weights.at(x, y) = float(std::min(1.0, contrast / seen));
+    }
+  }
+  return weights;
+}
+
 double mean_weight(const Image& weights) {
   const double sum = std::accumulate(weights.pixels.begin(), weights.pixels.end(), 0.0);
   return weights.pixels.empty() ? 0.0 : sum / double(weights.pixels.size());
+}
+
+double share_of_zeros(const Image& weights) {
+  const auto zeros = std::count(weights.pixels.begin(), weights.pixels.end(), 0.0f);
+  return weights.pixels.empty() ? 0.0 : double(zeros) / double(weights.pixels.size());
 }
 
 }  // namespace lockstep

@@ -23,7 +23,14 @@ float relative_difference(const Image& image, int x, int y);
 // One channel: w = min(1, c d) where d >= t, else 0.
 Image make_weights(const Image& pilot, const WeightSettings& settings);
 
-// The mean over all pixels.
+// Weights without parameters: what is shared is seen as structure only where it can be seen at all.
+// w = 1 where the image's noise will be above the threshold of vision, and in proportion below it.
+// `variance`: of the pilot's mean, by channel; smoothed here. The image's variance will be
+// `variance_ratio` times it. One channel.
+Image make_auto_weights(const Image& pilot, const Image& variance, double variance_ratio);
+
+// The mean over all pixels, and the share of those where the weight is 0.
 double mean_weight(const Image& weights);
+double share_of_zeros(const Image& weights);
 
 }  // namespace lockstep

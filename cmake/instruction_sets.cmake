@@ -1,0 +1,10 @@
+# The instruction sets that kernels are compiled for, once each from the same sources.
+set(LOCKSTEP_ISAS sse4 avx2 avx512)
+set(isa_flags_sse4 -msse4.2)
+set(isa_flags_avx2 -mavx2 -mfma)
+# g++ 12 warns about the undefined operands inside its own AVX-512 intrinsics.
+set(isa_flags_avx512 -mavx512f -mavx512dq -mavx512vl -mavx512bw -mfma
+    -mprefer-vector-width=512
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized$<SEMICOLON>-Wno-maybe-uninitialized>)
+# Without auto-vectorisation a width of 1 is honestly scalar.
+set(isa_common_flags -fno-tree-vectorize -fno-tree-slp-vectorize)

@@ -1,0 +1,67 @@
+#include "samplers/presets.h"
+
+#include "core/error.h"
+#include "samplers/sequences.h"
+
+#include <fmt/format.h>
+
+namespace lockstep {
+namespace {
+
+SamplerSpec shared(std::string_view name, std::string_view offset, WeightSource source) {
+  SamplerSpec s;
+  s.name = name;
+  s.share = Share::Image;
+  s.sequence = sequence_named("owen");
+  s.perturbation = perturbation_named(offset);
+  s.weight_source = source;
+  return s;
+}
+
+SamplerSpec strata() {
+  SamplerSpec s = shared("strata", "morton", WeightSource::Cells);
+  s.mix = Mix::Xor;
+  s.pairs = 3;
+  return s;
+}
+
+std::vector<Preset> make_presets() {
+  std::vector<Preset> list;
+  for (const SequenceInfo& info : Sequences::infos()) {
+    SamplerSpec s;
+    s.name = info.name;
+    s.sequence = sequence_named(info.name);
+    list.push_back({info.summary, info.paper, s});
+  }
+  using enum WeightSource;
+  list.push_back({"one sequence for all pixels",
+                  "Sadeghi, Chen and Jensen 2009, Coherent Path Tracing",
+                  shared("cpt", "none", Constant)});
+  list.push_back({"one sequence, left by each pixel as far as its weight from a pilot image says",
+                  "Staal and Hachisuka, Randomized Coherent Sampling",
+                  shared("rcs", "constant", Map)});
+  list.push_back({"one sequence, moved for each pixel by a blue-noise mask",
+                  "Georgiev and Fajardo 2016, Blue-Noise Dithered Sampling",
+                  shared("bluenoise", "bluenoise", Constant)});
+  list.push_back({"one order of the strata for all pixels, places in them stratified in Z-order",
+                  "stratum-coherent sampling, see docs/samplers.md", strata()});
+  return list;
+}
+
+}  // namespace
+
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> list = make_presets();
+  return list;
+}
+
+const Preset& find_preset(std::string_view name) {
+  std::string known;
+  for (const Preset& p : presets()) {
+    if (p.spec.name == name) return p;
+    known += (known.empty() ? "" : ", ") + p.spec.name;
+  }
+  throw UsageError(fmt::format("unknown sampler '{}'; choose from {}", name, known));
+}
+
+}  // namespace lockstep

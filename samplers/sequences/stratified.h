@@ -1,0 +1,48 @@
+// Jittered strata: the planned samples of a pixel lie in different cells of a grid, in an order and
+// at places of the pixel's own.
+#pragma once
+
+#include "samplers/index_shuffle.h"
+#include "samplers/sequence_info.h"
+
+namespace lockstep {
+inline namespace LOCKSTEP_ISA_NAMESPACE {
+
+struct StratifiedSequence {
+  static constexpr SequenceInfo info{"stratified", "jittered strata, in random order",
+                                     "Kensler 2013, Correlated Multi-Jittered Sampling", true};
+
+  // As square as can be, with at least as many cells as samples.
+  struct Grid {
+    std::uint32_t columns, rows;
+  };
+  LOCKSTEP_INLINE static Grid grid(std::uint32_t samples) {
+    std::uint32_t columns = 1;
+    while ((columns + 1) * (columns + 1) <= samples) ++columns;
+    return {columns, (samples + columns - 1) / columns};
+  }
+
+  // The number of the sample among those planned, and of the plan that it belongs to.
+  LOCKSTEP_INLINE static Fractions<std::uint32_t> prepare(const SamplerState& s,
+                                                          std::uint32_t sample, int) {
+    return {sample % s.samples, sample / s.samples};
+  }
+
+  template <class U>
+  LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, Fractions<U> prepared,
+                                            int pair) {
+    using V = FloatOf<U>;
+    const Grid g = grid(s.samples);
+    const Hash3<U> keys = pixel_keys(pixel ^ (prepared.y * U(0x9e3779b9u)), pair, s.seed);
+    const U cell = permuted_index(prepared.x, g.columns * g.rows, keys.x);
+    // Exact: cells are far fewer than 2^24.
+    const V row = floor((to_float(as_int(cell)) + V(0.5f)) * V(1.0f / float(g.columns)));
+    const V column = to_float(as_int(cell)) - row * V(float(g.columns));
+    const Hash3<U> jitter = pcg3d(keys.y, keys.z, prepared.x);
+    return {fraction_of((column + unit_float(jitter.x)) * V(1.0f / float(g.columns))),
+            fraction_of((row + unit_float(jitter.y)) * V(1.0f / float(g.rows)))};
+  }
+};
+
+}  // namespace LOCKSTEP_ISA_NAMESPACE
+}  // namespace lockstep
