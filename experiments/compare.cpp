@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <set>
@@ -107,6 +108,17 @@ void keep_images(Phase& phase, int sampler_index, const RenderResult& render) {
   phase.result.images.push_back(images);
 }
 
+void add_spectrum(SceneComparison& scene, int sampler, int spp, const Image& image) {
+  const auto place =
+      std::find_if(scene.spectra.begin(), scene.spectra.end(), [&](const RunSpectrum& spectrum) {
+        return spectrum.sampler == sampler && spectrum.spp == spp;
+      });
+  RunSpectrum& spectrum = place != scene.spectra.end()
+                              ? *place
+                              : scene.spectra.emplace_back(RunSpectrum{sampler, spp, 0, {}});
+  average_in(spectrum.mean, error_spectrum(scene.reference.image, image), ++spectrum.renders);
+}
+
 // Renders once with the settings, measures, and appends the row.
 void measure(Phase& phase, int sampler_index, double work_before) {
   const SamplerSpec& sampler = phase.settings.samplers[std::size_t(sampler_index)];
@@ -135,6 +147,7 @@ void measure(Phase& phase, int sampler_index, double work_before) {
   phase.result.threads = stats.threads;
   phase.csv.append(phase.result.scene, to_string(sampler), run);
   phase.result.runs.push_back(run);
+  add_spectrum(phase.result, sampler_index, stats.spp, render.image);
   if (settings.seed == 0) keep_images(phase, sampler_index, render);
 }
 

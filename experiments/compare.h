@@ -7,6 +7,7 @@
 
 #include "core/image.h"
 #include "core/scene_description.h"
+#include "experiments/error_spectrum.h"
 #include "packets/render.h"
 #include "samplers/sampler_spec.h"
 
@@ -47,6 +48,15 @@ struct Measurement {
   std::vector<double> errors;
 };
 
+// The spectrum of the error of a sampler's renders at one sample count: powers are averaged, so
+// that errors of different seeds do not cancel as they would in a mean image.
+struct RunSpectrum {
+  int sampler = 0;
+  int spp = 0;
+  int renders = 0;
+  ErrorSpectrum mean;
+};
+
 // The image that errors are measured against.
 struct Reference {
   Image image;
@@ -78,6 +88,7 @@ struct SceneComparison {
   std::string reference_png;
   float exposure = 1.0f;  // factor on radiance in every PNG of this scene
   std::vector<Measurement> runs;
+  std::vector<RunSpectrum> spectra;
   std::vector<RunImages> images;
 };
 

@@ -84,10 +84,10 @@ void add_compare_command(CLI::App& program, RunCommand& run) {
       "reference, and compare errors at equal CPU time; pilot images, filters and weights are\n"
       "paid for. Takes minutes: the reference and (sum of --spp) x seeds x samplers x scenes.");
   command->footer(
-      "DIR receives errors.csv (a row for each render, as it is measured), summary.json, "
-      "report.html\n"
-      "and the first seed's images. Errors are interpolated between sample counts, never beyond "
-      "them.\n"
+      "DIR receives errors.csv (a row for each render, as it is measured), spectra.csv (the errors'\n"
+      "power by frequency), summary.json, report.html and the first seed's images. Errors are\n"
+      "interpolated between sample counts, never beyond them. Verdicts against random need it among\n"
+      "the samplers, and at least 4 seeds.\n"
       "\n"
       "Examples:\n"
       "  lockstep compare cornell --samplers random,cpt,rcs,owen -o out/cornell\n"

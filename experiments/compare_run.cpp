@@ -1,6 +1,7 @@
 #include "experiments/compare_run.h"
 
 #include "core/error.h"
+#include "experiments/errors_csv.h"
 #include "experiments/output_file.h"
 #include "experiments/progress.h"
 #include "experiments/report.h"
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -43,11 +45,16 @@ void run_comparison(const CompareSettings& settings, bool quiet) {
   const auto summary = summarize(comparison);
   const fs::path directory = settings.directory;
   write_text_file((directory / "summary.json").string(), summary.dump(1) + '\n');
+  write_text_file((directory / "spectra.csv").string(), spectra_csv(comparison));
   write_text_file((directory / "report.html").string(), report_html(summary));
   fmt::print("{}\n", results_table(summary));
-  fmt::print("Every render: {}\nSummary:      {}\nImages:       {}\nReport:       {}\n",
-             (directory / "errors.csv").string(), (directory / "summary.json").string(),
-             (directory / "*.png").string(), (directory / "report.html").string());
+  for (const auto& [what, file] : {std::pair{"Every render", "errors.csv"},
+                                   {"Spectra", "spectra.csv"},
+                                   {"Summary", "summary.json"},
+                                   {"Images", "*.png"},
+                                   {"Report", "report.html"}}) {
+    fmt::print("{:14}{}\n", fmt::format("{}:", what), (directory / file).string());
+  }
   if (interrupted())
     throw Error("stopped by the user; what was measured until then is in the report");
 }

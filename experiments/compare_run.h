@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-// Writes errors.csv, summary.json, report.html and images to the settings' directory, prints the
-// table. Throws Cancelled after writing what there is when it was interrupted.
+// Writes errors.csv, spectra.csv, summary.json, report.html and images to the settings' directory,
+// prints the table. Throws Cancelled after writing what there is when it was interrupted.
 void run_comparison(const CompareSettings& settings, bool quiet);
 
 }  // namespace lockstep

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kScene = "reef";
 // owen beside them: it tells what a good sequence gains without any coherence.
-constexpr const char* kSamplers[] = {"random", "owen", "cpt", "rcs"};
+constexpr const char* kSamplers[] = {"random", "owen", "cpt", "rcs", "strata"};
 constexpr glm::ivec2 kFullResolution{480, 320};
 constexpr double kPlannedSeconds = 65.0;  // of 90: the rest is for a machine that slows down
 constexpr double kLatestSeconds = 75.0;   // no seed begins that would end later

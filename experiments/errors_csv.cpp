@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 namespace lockstep {
 
@@ -33,6 +35,25 @@ std::string errors_csv_row(std::string_view scene, std::string_view sampler,
                                  run.seed, run.spp, run.cpu_seconds, run.wall_seconds);
   for (double error : run.errors) line += fmt::format(",{:.9g}", error);
   return line;
+}
+
+std::string spectra_csv(const Comparison& comparison) {
+  std::string text = "scene,depth,sampler,spp,frequency,power\n";
+  for (const SceneComparison& scene : comparison.scenes) {
+    std::vector<RunSpectrum> spectra = scene.spectra;
+    std::sort(spectra.begin(), spectra.end(), [](const RunSpectrum& a, const RunSpectrum& b) {
+      return std::pair(a.sampler, a.spp) < std::pair(b.sampler, b.spp);
+    });
+    for (const RunSpectrum& spectrum : spectra) {
+      const std::string sampler =
+          to_string(comparison.settings.samplers[std::size_t(spectrum.sampler)]);
+      for (const SpectrumRing& ring : spectrum.mean.rings) {
+        text += fmt::format("{},{},{},{},{:.7g},{:.9g}\n", csv_field(scene.scene), scene.depth,
+                            csv_field(sampler), spectrum.spp, ring.frequency, ring.power);
+      }
+    }
+  }
+  return text;
 }
 
 ErrorsCsv::ErrorsCsv(const std::string& directory)

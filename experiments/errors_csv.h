@@ -1,4 +1,5 @@
 // errors.csv: one row for each render of a comparison, written and flushed as it is measured.
+// spectra.csv: how the power of the errors spreads over spatial frequencies.
 #pragma once
 
 #include "experiments/compare.h"
@@ -16,6 +17,10 @@ std::string csv_field(std::string_view text);
 std::string errors_csv_header();
 std::string errors_csv_row(std::string_view scene, std::string_view sampler,
                            const Measurement& run);
+
+// The whole of spectra.csv: scene,depth,sampler,spp,frequency,power. A row for each ring of
+// frequencies (cycles per pixel) with the power in it, averaged over seeds; see error_spectrum().
+std::string spectra_csv(const Comparison& comparison);
 
 // Starts the file anew; one from an earlier run is kept as errors-previous.csv.
 class ErrorsCsv {

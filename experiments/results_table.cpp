@@ -17,20 +17,28 @@ std::size_t name_width(const Json& scene) {
   return width;
 }
 
+// Three digits; large counts of pixels whole, not as powers of ten.
+std::string value_text(double value) {
+  return value >= 1000.0 && value < 1e7 ? fmt::format("{:.0f}", value)
+                                        : fmt::format("{:.3g}", value);
+}
+
+// "x0.87", with a star where the interval excludes 1.
 std::string ratio_text(const Json& ratio) {
-  if (ratio.is_null()) return "";
-  std::string text = fmt::format("x{:.3g}", ratio["value"].get<double>());
-  if (ratio.contains("interval_95")) {
-    text += fmt::format(" [{:.3g}, {:.3g}]", ratio["interval_95"][0].get<double>(),
-                        ratio["interval_95"][1].get<double>());
-  }
+  if (ratio.is_null()) return "-";
+  const double value = ratio["value"].get<double>();
+  std::string text =
+      value >= 0.1 && value < 100.0 ? fmt::format("x{:.2f}", value) : fmt::format("x{:.1g}", value);
+  if (!ratio.contains("interval_95")) return text;
+  const Json& interval = ratio["interval_95"];
+  if (interval[0].get<double>() > 1.0 || interval[1].get<double>() < 1.0) text += '*';
   return text;
 }
 
 std::string header_line(const Json& summary, std::size_t width, bool with_ratio) {
   std::string line = fmt::format("  {:{}}", "sampler", width);
-  for (const Json& metric : summary["metrics"]) {
-    line += fmt::format("  {:<{}}", metric["name"].get<std::string>(), with_ratio ? 29 : 14);
+  for (const Json& column : summary["table"]) {
+    line += fmt::format(" {:<{}}", column["heading"].get<std::string>(), with_ratio ? 15 : 13);
   }
   return line;
 }
@@ -38,15 +46,16 @@ std::string header_line(const Json& summary, std::size_t width, bool with_ratio)
 std::string equal_time_table(const Json& summary, const Json& scene, const Json& budget) {
   const std::size_t width = name_width(scene);
   std::string text = fmt::format(
-      "\n  at {:.3g} s of CPU time (median; ratio to {}, with 95 % interval over seeds)\n",
+      "\n  at {:.3g} s of CPU time: medians and ratios to {}; * 95 % interval excludes 1\n",
       budget["cpu_seconds"].get<double>(), scene["samplers"][0]["sampler"].get<std::string>());
   text += header_line(summary, width, true) + '\n';
   for (const Json& row : budget["samplers"]) {
     text += fmt::format("  {:{}}", row["sampler"].get<std::string>(), width);
-    for (const Json& metric : summary["metrics"]) {
-      const Json& cell = row[metric["name"].get<std::string>()];
-      text +=
-          fmt::format("  {:<10.4g}{:<19}", cell["median"].get<double>(), ratio_text(cell["ratio"]));
+    const bool is_base = &row == &budget["samplers"].front();
+    for (const Json& column : summary["table"]) {
+      const Json& cell = row[column["name"].get<std::string>()];
+      text += fmt::format(" {:<8} {:<6}", value_text(cell["median"].get<double>()),
+                          is_base ? "" : ratio_text(cell["ratio"]));
     }
     text += '\n';
   }
@@ -58,19 +67,36 @@ std::string rung_table(const Json& summary, const Json& scene) {
   std::string text =
       "\n  No CPU time is covered by every sampler: nothing to compare at equal time.\n"
       "  Give more or wider --spp. Medians at each sample count:\n";
-  text += header_line(summary, width, false) + fmt::format("  {:>7}  {}", "spp", "CPU s") + '\n';
+  text += header_line(summary, width, false) + fmt::format(" {:>7} {:>8}", "spp", "CPU s") + '\n';
   for (const Json& sampler : scene["samplers"]) {
     for (const Json& rung : sampler["rungs"]) {
       text += fmt::format("  {:{}}", sampler["sampler"].get<std::string>(), width);
-      for (const Json& metric : summary["metrics"]) {
-        text += fmt::format("  {:<14.4g}",
-                            rung[metric["name"].get<std::string>()]["median"].get<double>());
+      for (const Json& column : summary["table"]) {
+        const Json& value = rung[column["name"].get<std::string>()]["median"];
+        text += fmt::format(" {:<13}", value_text(value.get<double>()));
       }
-      text += fmt::format("  {:>7}  {:.3g}\n", rung["spp"].get<int>(),
+      text += fmt::format(" {:>7} {:>8.3g}\n", rung["spp"].get<int>(),
                           rung["cpu_seconds"]["median"].get<double>());
     }
   }
   return text;
+}
+
+// Broken at spaces into lines of at most kLineWidth, those after the first indented.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kLineWidth = 96;
+  std::string result, line;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(' ', at), text.size());
+    const std::string word = text.substr(at, end - at);
+    if (!line.empty() && line.size() + 1 + word.size() > kLineWidth) {
+      result += line + '\n';
+      line = "   ";
+    }
+    line += line.empty() ? word : ' ' + word;
+    at = end + 1;
+  }
+  return result + line + '\n';
 }
 
 std::string scene_header(const Json& scene) {
@@ -103,6 +129,10 @@ std::string results_table(const Json& summary) {
       text += fmt::format("  {} is biased: its mix of pilot and main image depends on the pilot.\n",
                           sampler["sampler"].get<std::string>());
     }
+  }
+  if (!summary["verdicts"].empty()) text += '\n';
+  for (const Json& verdict : summary["verdicts"]) {
+    text += wrapped(verdict["sentence"].get<std::string>());
   }
   return text;
 }

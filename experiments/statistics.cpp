@@ -1,14 +1,13 @@
 #include "experiments/statistics.h"
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace lockstep {
 namespace {
 
-constexpr int kResamples = 2000;
-constexpr std::size_t kFewestPairs = 4;  // below, a bootstrap says nothing
 constexpr double kBudgetStep = 4.0;
 
 double interpolate(const CurvePoint& a, const CurvePoint& b, double time) {
@@ -78,15 +77,13 @@ std::optional<Ratio> paired_ratio(const std::vector<double>& errors,
   Ratio ratio{std::exp(sum / double(logs.size())), {}, {}};
   if (logs.size() < kFewestPairs) return ratio;
 
-  std::mt19937 random(1);
-  std::vector<double> means;
-  for (int r = 0; r < kResamples; ++r) {
-    double resampled = 0.0;
-    for (std::size_t i = 0; i < logs.size(); ++i) resampled += logs[random() % logs.size()];
-    means.push_back(resampled / double(logs.size()));
-  }
-  ratio.low = std::exp(quantile(means, 0.025));
-  ratio.high = std::exp(quantile(means, 0.975));
+  double squares = 0.0;
+  const double centre = std::log(ratio.value), n = double(logs.size());
+  for (double value : logs) squares += (value - centre) * (value - centre);
+  const double error = std::sqrt(squares / (n - 1.0) / n);
+  const double reach = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * error;
+  ratio.low = std::exp(centre - reach);
+  ratio.high = std::exp(centre + reach);
   return ratio;
 }
 

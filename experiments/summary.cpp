@@ -1,72 +1,32 @@
 #include "experiments/summary.h"
 
+#include "experiments/equal_time.h"
 #include "experiments/machine.h"
 #include "experiments/metrics.h"
 #include "experiments/render_metadata.h"
-#include "experiments/statistics.h"
+#include "experiments/verdict.h"
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <map>
-#include <set>
 
 namespace lockstep {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// One sampler's runs by sample count; each list is in the order of the seeds.
-using Rungs = std::map<int, std::vector<const Measurement*>>;
-
-Rungs rungs_of(const SceneComparison& scene, int sampler) {
-  Rungs rungs;
-  for (const Measurement& run : scene.runs) {
-    if (run.sampler == sampler) rungs[run.spp].push_back(&run);
-  }
-  for (auto& [spp, runs] : rungs) {
-    std::sort(runs.begin(), runs.end(),
-              [](const Measurement* a, const Measurement* b) { return a->seed < b->seed; });
-  }
-  return rungs;
-}
-
-template <class Get>
-std::vector<double> values_of(const std::vector<const Measurement*>& runs, Get get) {
-  std::vector<double> values;
-  for (const Measurement* run : runs) values.push_back(get(*run));
-  return values;
-}
+// The metrics that tables show, and their headings: errors as numbers, as a viewer judges them, and
+// as seen from afar.
+constexpr std::pair<std::string_view, std::string_view> kTable[] = {
+    {"rmse", "RMSE"},
+    {"relmse", "relMSE"},
+    {"flip_ldr", "FLIP"},
+    {"yee_pixels", "Yee pixels"},
+    {"low_pass_rmse", "low-pass RMSE"},
+};
 
 template <class Get>
 Json spread_json(const std::vector<const Measurement*>& runs, Get get) {
   const Spread spread = spread_of(values_of(runs, get));
   return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
-}
-
-double cpu_median(const std::vector<const Measurement*>& runs) {
-  return quantile(values_of(runs, [](const Measurement& run) { return run.cpu_seconds; }), 0.5);
-}
-
-// The median error of each rung at its median time.
-std::vector<CurvePoint> median_curve(const Rungs& rungs, std::size_t metric) {
-  std::vector<CurvePoint> curve;
-  for (const auto& [spp, runs] : rungs) {
-    const auto error = [&](const Measurement& run) { return run.errors[metric]; };
-    curve.push_back({cpu_median(runs), quantile(values_of(runs, error), 0.5)});
-  }
-  return curve;
-}
-
-// One seed's errors at the rungs' median times: noise in a single timing stays out of the ratio.
-std::vector<CurvePoint> seed_curve(const Rungs& rungs, std::uint32_t seed, std::size_t metric) {
-  std::vector<CurvePoint> curve;
-  for (const auto& [spp, runs] : rungs) {
-    for (const Measurement* run : runs) {
-      if (run->seed == seed) curve.push_back({cpu_median(runs), run->errors[metric]});
-    }
-  }
-  return curve;
 }
 
 Json run_json(const Measurement& run) {
@@ -75,6 +35,20 @@ Json run_json(const Measurement& run) {
   for (std::size_t m = 0; m < metrics().size(); ++m)
     json[std::string(metrics()[m].name)] = run.errors[m];
   return json;
+}
+
+// Powers at the scene's "frequencies", and that of white noise of the same total power.
+Json spectrum_json(const ErrorSpectrum& spectrum) {
+  Json json = {{"white_noise", spectrum.white}, {"power", Json::array()}};
+  for (const SpectrumRing& ring : spectrum.rings) json["power"].push_back(ring.power);
+  return json;
+}
+
+Json frequencies_json(const SceneComparison& scene) {
+  Json list = Json::array();
+  if (scene.spectra.empty()) return list;
+  for (const SpectrumRing& ring : scene.spectra.front().mean.rings) list.push_back(ring.frequency);
+  return list;
 }
 
 Json rung_json(const SceneComparison& scene, int sampler, int spp,
@@ -96,6 +70,11 @@ Json rung_json(const SceneComparison& scene, int sampler, int spp,
     json[std::string(metrics()[m].name)] =
         spread_json(runs, [m](const Measurement& run) { return run.errors[m]; });
   }
+  for (const RunSpectrum& spectrum : scene.spectra) {
+    if (spectrum.sampler == sampler && spectrum.spp == spp) {
+      json["spectrum"] = spectrum_json(spectrum.mean);
+    }
+  }
   for (const Measurement* run : runs) json["runs"].push_back(run_json(*run));
   for (const RunImages& images : scene.images) {
     if (images.sampler != sampler || images.spp != spp) continue;
@@ -106,21 +85,7 @@ Json rung_json(const SceneComparison& scene, int sampler, int spp,
   return json;
 }
 
-// Ratio to the base sampler at `time`, over the seeds that both have at every rung around it.
-Json ratio_json(const Rungs& rungs, const Rungs& base, std::size_t metric, double time) {
-  std::set<std::uint32_t> seeds;
-  for (const auto& [spp, runs] : rungs) {
-    for (const Measurement* run : runs) seeds.insert(run->seed);
-  }
-  std::vector<double> errors, base_errors;
-  for (std::uint32_t seed : seeds) {
-    const std::optional<double> error = error_at(seed_curve(rungs, seed, metric), time);
-    const std::optional<double> base_error = error_at(seed_curve(base, seed, metric), time);
-    if (!error || !base_error) continue;
-    errors.push_back(*error);
-    base_errors.push_back(*base_error);
-  }
-  const std::optional<Ratio> ratio = paired_ratio(errors, base_errors);
+Json ratio_json(const std::optional<Ratio>& ratio) {
   if (!ratio) return nullptr;
   Json json = {{"value", ratio->value}};
   if (ratio->low) json["interval_95"] = {*ratio->low, *ratio->high};
@@ -135,8 +100,8 @@ Json budget_json(const std::vector<SamplerSpec>& samplers, const std::vector<Run
     for (std::size_t m = 0; m < metrics().size(); ++m) {
       const std::optional<double> error = error_at(median_curve(rungs[s], m), time);
       if (!error) continue;
-      entry[std::string(metrics()[m].name)] = {{"median", *error},
-                                               {"ratio", ratio_json(rungs[s], rungs[0], m, time)}};
+      entry[std::string(metrics()[m].name)] = {
+          {"median", *error}, {"ratio", ratio_json(ratio_at(rungs[s], rungs[0], m, time))}};
     }
     json["samplers"].push_back(entry);
   }
@@ -144,10 +109,8 @@ Json budget_json(const std::vector<SamplerSpec>& samplers, const std::vector<Run
 }
 
 Json equal_time_json(const std::vector<SamplerSpec>& samplers, const std::vector<Rungs>& rungs) {
-  std::vector<std::vector<CurvePoint>> curves;
-  for (const Rungs& sampler_rungs : rungs) curves.push_back(median_curve(sampler_rungs, 0));
   Json json = {{"common_range", nullptr}, {"budgets", Json::array()}};
-  const std::optional<TimeRange> range = common_times(curves);
+  const std::optional<TimeRange> range = common_times(rungs);
   if (!range) return json;
   json["common_range"] = {range->low, range->high};
   for (double time : time_budgets(*range)) {
@@ -168,7 +131,8 @@ Json reference_json(const SceneComparison& scene) {
   return json;
 }
 
-Json scene_json(const SceneComparison& scene, const std::vector<SamplerSpec>& samplers) {
+Json scene_json(const SceneComparison& scene, const std::vector<SamplerSpec>& samplers,
+                const std::vector<Rungs>& rungs) {
   Json json = {{"scene", scene.scene},
                {"label", scene.label},
                {"resolution", {scene.width, scene.height}},
@@ -180,14 +144,13 @@ Json scene_json(const SceneComparison& scene, const std::vector<SamplerSpec>& sa
                {"left_out", scene.left_out},
                {"warnings", scene.warnings},
                {"exposure", scene.exposure},
-               {"reference", reference_json(scene)}};
-  std::vector<Rungs> rungs;
+               {"reference", reference_json(scene)},
+               {"frequencies", frequencies_json(scene)}};
   for (std::size_t s = 0; s < samplers.size(); ++s) {
-    rungs.push_back(rungs_of(scene, int(s)));
     Json entry = {{"sampler", to_string(samplers[s])},
                   {"biased", !samplers[s].unbiased()},
                   {"rungs", Json::array()}};
-    for (const auto& [spp, runs] : rungs.back()) {
+    for (const auto& [spp, runs] : rungs[s]) {
       entry["rungs"].push_back(rung_json(scene, int(s), spp, runs));
     }
     json["samplers"].push_back(entry);
@@ -213,9 +176,19 @@ Json summarize(const Comparison& comparison) {
                                {"unit", metric.unit},
                                {"lower_is_better", metric.lower_is_better}});
   }
+  for (const auto& [metric, heading] : kTable) {
+    json["table"].push_back({{"name", metric}, {"heading", heading}});
+  }
+  json["verdicts"] = Json::array();
   json["scenes"] = Json::array();
   for (const SceneComparison& scene : comparison.scenes) {
-    json["scenes"].push_back(scene_json(scene, settings.samplers));
+    std::vector<Rungs> rungs;
+    for (std::size_t s = 0; s < settings.samplers.size(); ++s) {
+      rungs.push_back(rungs_of(scene, int(s)));
+    }
+    const Json verdict = verdict_json(scene, settings.samplers, rungs);
+    if (!verdict.is_null()) json["verdicts"].push_back(verdict);
+    json["scenes"].push_back(scene_json(scene, settings.samplers, rungs));
   }
   return json;
 }

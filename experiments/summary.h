@@ -10,12 +10,13 @@
 namespace lockstep {
 
 // Per scene, sampler and sample count: median and 5 - 95 % of every time and metric over the
-// seeds, and the runs themselves; per scene: errors at equal CPU time, interpolated, never
-// extrapolated, with their ratio to the first sampler.
+// seeds, the mean spectrum of the error, and the runs themselves; per scene: errors at equal CPU
+// time, interpolated, never extrapolated, with their ratio to the first sampler, and the verdict in
+// words (verdict.h).
 nlohmann::ordered_json summarize(const Comparison& comparison);
 
 // The equal-time results as lines of text; where no time is common to all samplers, the medians
-// at each sample count.
+// at each sample count. Below, the verdicts.
 std::string results_table(const nlohmann::ordered_json& summary);
 
 }  // namespace lockstep

@@ -9,7 +9,9 @@ namespace {
 
 // Sequences that can do part of their work for a sample, whatever the pixel, say so by prepare().
 template <class S>
-concept HasPrepare = requires(const SamplerState& s) { S::prepare(s, std::uint32_t(0), 0); };
+concept HasPrepare = requires(const SamplerState& s) {
+  S::prepare(s, std::uint32_t(0), 0);
+};
 
 // One point, alone.
 template <class S>
@@ -58,11 +60,19 @@ void fill_own(const SamplerState& state, const SampleBatch& batch, int pair, flo
   }
 }
 
-// Shared sequences are those of pixels that no image has.
-std::uint32_t shared_pixel(const SamplerState& state, const SampleBatch& batch) {
-  if (state.share != Share::Tile) return 0xffffffffu;
-  const PixelPosition<std::uint32_t> p = position_of(batch.pixel[0], state.width);
-  return 0x80000000u | (p.y / share_tile) << 15 | p.x / share_tile;
+// Shared sequences are those of a pixel that no image has, with a seed of their own for each tile
+// and group of interleaved pixels that share one.
+constexpr std::uint32_t no_pixel = 0xffffffffu;
+
+SamplerState shared_state(const SamplerState& state, const SampleBatch& batch, int group) {
+  std::uint32_t tile = 0;
+  if (state.share == Share::Tile) {
+    const PixelPosition<std::uint32_t> p = position_of(batch.pixel[0], state.width);
+    tile = 1 + (p.y / share_tile << 16 | p.x / share_tile);
+  }
+  SamplerState shared = state;
+  shared.seed = pcg3d(state.seed, tile, std::uint32_t(group)).x;
+  return shared;
 }
 
 // The points that pixels share: those of a group of interleaved pixels after those of another.
@@ -74,12 +84,11 @@ struct SharedPoints {
 template <class S>
 void make_shared_points(const SamplerState& state, const SampleBatch& batch, int pair,
                         SharedPoints& points) {
-  const std::uint32_t first_pixel = shared_pixel(state, batch);
   for (int group = 0; group < state.interleave * state.interleave; ++group) {
-    const std::uint32_t pixel = first_pixel - (std::uint32_t(group) << 26);
+    const SamplerState shared = shared_state(state, batch, group);
     for (int k = 0; k < batch.samples; ++k) {
       const auto point =
-          single_point<S>(state, pixel, batch.first_sample + std::uint32_t(k), pair);
+          single_point<S>(shared, no_pixel, batch.first_sample + std::uint32_t(k), pair);
       points.x[group * max_samples_per_batch + k] = point.x;
       points.y[group * max_samples_per_batch + k] = point.y;
     }
@@ -87,8 +96,7 @@ void make_shared_points(const SamplerState& state, const SampleBatch& batch, int
 }
 
 template <int W>
-LOCKSTEP_INLINE Fractions<UInt<W>> shared_point(const SamplerState& state,
-                                                const SampleBatch& batch,
+LOCKSTEP_INLINE Fractions<UInt<W>> shared_point(const SamplerState& state, const SampleBatch& batch,
                                                 const SharedPoints& points, UInt<W> pixel,
                                                 UInt<W> sample) {
   using I = Int<W>;
@@ -118,8 +126,8 @@ LOCKSTEP_INLINE Fractions<UInt<W>> moved(Mix mix, const Fractions<UInt<W>>& poin
 }
 
 template <int W, class P>
-void fill_perturbed(const SamplerState& state, const SampleBatch& batch,
-                    const SharedPoints& points, int pair, float* u, float* v) {
+void fill_perturbed(const SamplerState& state, const SampleBatch& batch, const SharedPoints& points,
+                    int pair, float* u, float* v) {
   using U = UInt<W>;
   using V = Float<W>;
   for (int i = 0; i < batch.count; i += W) {

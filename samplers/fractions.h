@@ -43,11 +43,17 @@ LOCKSTEP_INLINE Fractions<U> random_fractions(U pixel, U sample, int pair, std::
   return {h.x, h.y};
 }
 
+// The lower bits of a hash's words depend on little; scrambles use them first.
+template <class U>
+LOCKSTEP_INLINE U folded(U h) {
+  return h ^ (h >> 16);
+}
+
 // Keys of one pixel's randomisation of a pair, for all of its samples.
 template <class U>
-LOCKSTEP_INLINE Hash3<U> pixel_keys(U pixel, int pair, std::uint32_t seed) {
+LOCKSTEP_INLINE Hash4<U> pixel_keys(U pixel, int pair, std::uint32_t seed) {
   const Hash4<U> keys = pcg4d(pixel, U(std::uint32_t(pair)), U(seed), U(0x50b01u));
-  return {keys.x, keys.y, keys.z};
+  return {folded(keys.x), folded(keys.y), folded(keys.z), folded(keys.w)};
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

@@ -6,7 +6,8 @@
 
 namespace lockstep {
 
-// What a sampler is to fill: the image, and how many samples each pixel will get as far as is known.
+// What a sampler is to fill: the image, and how many samples each pixel will get as far as is
+// known.
 struct SamplePlan {
   int width = 1;
   int height = 1;

@@ -1,8 +1,8 @@
 // Where a pixel lies, from its number, and its place on the Z-order curve.
 #pragma once
 
-#include "samplers/sampler_state.h"
 #include "core/simd.h"
+#include "samplers/sampler_state.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {

@@ -22,7 +22,8 @@ class Builder {
   // From 4^k points, one in every square of side 2^-k, to 4^(k + 1), one in every quarter of them.
   void extend(int k) {
     const std::uint32_t n = 1u << 2 * k;
-    std::vector<std::uint32_t> beside(n);  // of a square: which neighbour of its first point is next
+    std::vector<std::uint32_t> beside(
+        n);  // of a square: which neighbour of its first point is next
     for (std::uint32_t& b : beside) b = std::uint32_t(random_()) & 1u;
     begin(2 * k + 1, n);
     for (std::uint32_t i = 0; i < n; ++i) place(n + i, i, k, 1, 1);

@@ -19,7 +19,8 @@ SamplerSpec shared(std::string_view name, std::string_view offset, WeightSource 
 }
 
 SamplerSpec strata() {
-  SamplerSpec s = shared("strata", "morton", WeightSource::Cells);
+  SamplerSpec s = shared("strata", "bluenoise", WeightSource::Cells);
+  s.sequence = sequence_named("linked");
   s.mix = Mix::Xor;
   s.pairs = 3;
   return s;
@@ -43,7 +44,7 @@ std::vector<Preset> make_presets() {
   list.push_back({"one sequence, moved for each pixel by a blue-noise mask",
                   "Georgiev and Fajardo 2016, Blue-Noise Dithered Sampling",
                   shared("bluenoise", "bluenoise", Constant)});
-  list.push_back({"one order of the strata for all pixels, places in them stratified in Z-order",
+  list.push_back({"one order of the strata for all pixels, places in them moved by a blue-noise mask",
                   "stratum-coherent sampling, see docs/samplers.md", strata()});
   return list;
 }

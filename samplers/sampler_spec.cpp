@@ -99,7 +99,10 @@ std::string number(float value) { return fmt::format("{}", value); }
 
 void set_weight(SamplerSpec& s, std::string_view key, std::string_view value) {
   using enum WeightSource;
-  s.weight_source = value == "map" ? Map : value == "auto" ? Auto : value == "cells" ? Cells : Constant;
+  s.weight_source = value == "map"     ? Map
+                    : value == "auto"  ? Auto
+                    : value == "cells" ? Cells
+                                       : Constant;
   if (s.weight_source == Constant) s.weight = parse_number(key, value);
 }
 std::string get_weight(const SamplerSpec& s) {
@@ -129,8 +132,9 @@ const std::vector<Option>& options() {
       {"sequence", alternatives<SequenceId>(), "the sequence u_k", Needs::Nothing,
        [](S& s, T k, T v) { s.sequence = parse_choice<SequenceId>(k, v); },
        [](const S& s) { return word(s.sequence); }},
-      {"share", alternatives<Share>(), "whose sequence it is: each pixel's, each tile's, everyone's",
-       Needs::Nothing, [](S& s, T k, T v) { s.share = parse_choice<Share>(k, v); },
+      {"share", alternatives<Share>(),
+       "whose sequence it is: each pixel's, each tile's, everyone's", Needs::Nothing,
+       [](S& s, T k, T v) { s.share = parse_choice<Share>(k, v); },
        [](const S& s) { return word(s.share); }},
       {"pairs", "number", "pairs of dimensions that are shared, from the first; 0: all",
        Needs::Sharing, [](S& s, T k, T v) { s.pairs = parse_count(k, v); },
@@ -201,7 +205,8 @@ void check_weight(const SamplerSpec& spec, std::string_view text) {
         fmt::format("{}: a weight map needs an offset to weigh; set offset=constant", text));
   }
   if (!moves && (spec.weight != base.weight || spec.weight_source == WeightSource::Cells)) {
-    throw UsageError(fmt::format("{}: a weight needs an offset to weigh; set offset=constant", text));
+    throw UsageError(
+        fmt::format("{}: a weight needs an offset to weigh; set offset=constant", text));
   }
   if (spec.weight_source == WeightSource::Constant && spec.weight > 1.0f) {
     throw UsageError(fmt::format("{}: weight lies in [0, 1]; 1 is already independent", text));
@@ -276,7 +281,9 @@ std::string sampler_help() {
   return text;
 }
 
-SequenceId sequence_named(std::string_view name) { return parse_choice<SequenceId>("sequence", name); }
+SequenceId sequence_named(std::string_view name) {
+  return parse_choice<SequenceId>("sequence", name);
+}
 PerturbationId perturbation_named(std::string_view name) {
   return parse_choice<PerturbationId>("offset", name);
 }

@@ -10,7 +10,7 @@ namespace lockstep {
 
 struct SequenceInfo {
   std::string_view name, summary, paper;
-  bool planned = false;  // its points depend on SamplerState::samples
+  bool planned = false;                       // its points depend on SamplerState::samples
   const std::uint32_t* (*table)() = nullptr;  // made when first asked for, and kept
 };
 

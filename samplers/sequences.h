@@ -4,6 +4,7 @@
 
 #include "samplers/sequences/halton.h"
 #include "samplers/sequences/lattice.h"
+#include "samplers/sequences/linked.h"
 #include "samplers/sequences/owen.h"
 #include "samplers/sequences/pmj02.h"
 #include "samplers/sequences/random.h"
@@ -15,8 +16,9 @@
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
-using Sequences = TypeList<RandomSequence, StratifiedSequence, OwenSequence, SobolSequence,
-                           Pmj02Sequence, HaltonSequence, LatticeSequence, ZSobolSequence>;
+using Sequences =
+    TypeList<RandomSequence, StratifiedSequence, OwenSequence, SobolSequence, Pmj02Sequence,
+             HaltonSequence, LatticeSequence, LinkedSequence, ZSobolSequence>;
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE
 }  // namespace lockstep

@@ -41,6 +41,13 @@ LOCKSTEP_INLINE U shuffled_index(U index, U key) {
   return reverse_bits(scramble_mirrored(reverse_bits(index), key));
 }
 
+// A point moved by keys, so that each point is uniform by itself: for one number the hash above is
+// not quite.
+template <class U>
+LOCKSTEP_INLINE Fractions<U> digit_shifted(const Fractions<U>& point, U key_x, U key_y) {
+  return {point.x ^ key_x, point.y ^ key_y};
+}
+
 // Point `index`, each coordinate scrambled by its key. Every aligned block of 2^m indices is a
 // (0, m, 2)-net.
 template <class U>

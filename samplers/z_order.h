@@ -57,7 +57,7 @@ LOCKSTEP_INLINE Fractions<U> z_ordered_point(const SamplerState& s, U pixel, U s
   const Hash4<U> keys =
       pcg4d(U(std::uint32_t(pair)), tile, sample >> sample_bits, U(seed ^ 0x20b01u));
   const U place = permuted_digits(index, 2 * pixel_bits + sample_bits, keys.x);
-  return scrambled_sobol(place, keys.y, keys.z);
+  return scrambled_sobol(place, folded(keys.y), folded(keys.z));
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

@@ -3,6 +3,7 @@
 #include "experiments/compare.h"
 #include "experiments/demo_plan.h"
 #include "experiments/errors_csv.h"
+#include "experiments/metrics.h"
 #include "experiments/output_file.h"
 #include "experiments/report.h"
 #include "experiments/summary.h"
@@ -11,23 +12,35 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <sstream>
 
 namespace lockstep {
 namespace {
 
 namespace fs = std::filesystem;
 
-Measurement made_run(int sampler, std::uint32_t seed, int spp, double cpu, double error) {
+// A run whose errors are `error`, squares of it, or 1 less it, as the metric wants; Yee's are
+// `yee` pixels.
+Measurement made_run(int sampler, std::uint32_t seed, int spp, double cpu, double error,
+                     double yee = 1234.0) {
   Measurement run;
   run.sampler = sampler;
   run.seed = seed;
   run.spp = spp;
   run.cpu_seconds = cpu;
   run.wall_seconds = cpu;
-  run.errors = {error, error * error, error * error};
+  for (const Metric& metric : metrics()) {
+    const bool squared = metric.name.find("mse") != std::string_view::npos &&
+                         metric.name.find("rmse") == std::string_view::npos;
+    const bool of_yee = metric.name.starts_with("yee");
+    const double value = squared ? error * error : of_yee ? yee : error;
+    run.errors.push_back(metric.lower_is_better ? value : 1.0 - error);
+  }
   return run;
 }
 
@@ -46,8 +59,57 @@ Comparison made_comparison() {
       }
     }
   }
+  for (int s = 0; s < 2; ++s) {
+    scene.spectra.push_back({s, 16, 4, {{{0.125, 4.0}, {0.375, 1.0}}, 2.0}});
+  }
   comparison.scenes.push_back(scene);
   return comparison;
+}
+
+// A sampler of a made-up comparison: seconds for a sample per pixel, and the error of `seed` as a
+// factor on random's 1 / sqrt(spp).
+struct MadeSampler {
+  std::string name;
+  double cost;
+  std::function<double(int spp, std::uint32_t seed)> factor;
+};
+
+Comparison made_comparison(const std::vector<MadeSampler>& samplers, int seeds) {
+  Comparison comparison;
+  comparison.settings.rungs = {4, 16, 64};
+  comparison.settings.seeds = seeds;
+  SceneComparison scene;
+  scene.scene = scene.label = "made";
+  scene.depth = 3;
+  for (std::size_t s = 0; s < samplers.size(); ++s) {
+    comparison.settings.samplers.push_back(parse_sampler(samplers[s].name));
+    for (std::uint32_t seed = 0; seed < std::uint32_t(seeds); ++seed) {
+      for (int spp : comparison.settings.rungs) {
+        scene.runs.push_back(made_run(int(s), seed, spp, samplers[s].cost * spp,
+                                      samplers[s].factor(spp, seed) / std::sqrt(double(spp))));
+      }
+    }
+  }
+  comparison.scenes.push_back(scene);
+  return comparison;
+}
+
+double always_one(int, std::uint32_t) { return 1.0; }
+double above(int, std::uint32_t seed) { return 1.2 + 0.01 * seed; }
+double below(int, std::uint32_t seed) { return 0.6 + 0.01 * seed; }
+double about_one(int, std::uint32_t seed) { return seed % 2 ? 1.1 : 1.0 / 1.1; }
+
+std::string verdict_on(const std::vector<MadeSampler>& samplers, int seeds) {
+  const auto summary = summarize(made_comparison(samplers, seeds));
+  EXPECT_EQ(summary["verdicts"].size(), 1u);
+  return summary["verdicts"][0]["sentence"];
+}
+
+// With one space for every run of white space.
+std::string squeezed(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  for (std::size_t at = 0; (at = text.find("  ", at)) != std::string::npos;) text.erase(at, 1);
+  return text;
 }
 
 std::vector<std::string> lines_of(const fs::path& path) {
@@ -66,14 +128,15 @@ struct TemporaryFolder {
 TEST(ErrorsCsv, HeaderIsWhatScriptsRelyOn) {
   EXPECT_TRUE(errors_csv_header().starts_with(
       "scene,sampler,seed,spp,cpu_seconds,wall_seconds,rmse,relmse,relmse_trimmed"));
+  EXPECT_TRUE(errors_csv_header().ends_with(",low_pass_rmse")) << "all metrics, not the table's";
 }
 
 TEST(ErrorsCsv, FieldsWithCommasAreQuoted) {
   EXPECT_EQ(csv_field("random"), "random");
   EXPECT_EQ(csv_field("rcs:c=4,t=0.02"), "\"rcs:c=4,t=0.02\"");
   EXPECT_EQ(csv_field("a\"b"), "\"a\"\"b\"");
-  EXPECT_EQ(errors_csv_row("cornell", "rcs:c=1,t=0", made_run(0, 3, 16, 1.5, 0.5)),
-            "cornell,\"rcs:c=1,t=0\",3,16,1.5,1.5,0.5,0.25,0.25");
+  EXPECT_EQ(errors_csv_row("cornell", "rcs:c=1,t=0", made_run(0, 3, 16, 1.5, 0.5, 7)),
+            "cornell,\"rcs:c=1,t=0\",3,16,1.5,1.5,0.5,0.25,0.25,7,7,0.5,0.5,0.25,0.5,0.5,0.5");
 }
 
 TEST(ErrorsCsv, AnEarlierFileIsKept) {
@@ -84,6 +147,22 @@ TEST(ErrorsCsv, AnEarlierFileIsKept) {
   ASSERT_EQ(lines_of(folder.path / "errors.csv").size(), 2u);  // visible while the file is open
   EXPECT_TRUE(lines_of(folder.path / "errors.csv")[1].starts_with("new,"));
   EXPECT_TRUE(lines_of(folder.path / "errors-previous.csv")[1].starts_with("old,"));
+}
+
+TEST(SpectraCsv, HasARowForEachRing) {
+  Comparison comparison = made_comparison();
+  comparison.settings.samplers[1] = parse_sampler("rcs:c=1,t=0");
+  SceneComparison& scene = comparison.scenes[0];
+  scene.scene = "cornell";
+  scene.depth = 5;
+  scene.spectra.push_back({0, 4, 4, {{{0.125, 0.5}}, 1.0}});  // measured last, written first
+  EXPECT_EQ(spectra_csv(comparison),
+            "scene,depth,sampler,spp,frequency,power\n"
+            "cornell,5,random,4,0.125,0.5\n"
+            "cornell,5,random,16,0.125,4\n"
+            "cornell,5,random,16,0.375,1\n"
+            "cornell,5,\"rcs:c=1,t=0\",16,0.125,4\n"
+            "cornell,5,\"rcs:c=1,t=0\",16,0.375,1\n");
 }
 
 TEST(OutputFile, NamesAreMadeSafe) {
@@ -129,6 +208,129 @@ TEST(Summary, RungsHaveMedianAndSpread) {
   EXPECT_EQ(rung["runs"].size(), 5u);
   EXPECT_TRUE(summary["scenes"][0]["equal_time"]["budgets"].empty()) << "owen has no runs";
   EXPECT_NE(results_table(summary).find("nothing to compare at equal time"), std::string::npos);
+}
+
+TEST(Summary, HasSpectra) {
+  const auto summary = summarize(made_comparison());
+  const auto& scene = summary["scenes"][0];
+  EXPECT_EQ(scene["frequencies"].dump(), "[0.125,0.375]");
+  const auto& rungs = scene["samplers"][1]["rungs"];
+  EXPECT_EQ(rungs[1]["spectrum"]["power"].dump(), "[4.0,1.0]");
+  EXPECT_EQ(rungs[1]["spectrum"]["white_noise"], 2.0);
+  EXPECT_FALSE(rungs[0].contains("spectrum")) << "none was measured at 4 spp";
+}
+
+TEST(Summary, AnErrorOfZeroHasNoRatio) {
+  Comparison comparison = made_comparison();
+  const std::size_t yee = 3;
+  ASSERT_EQ(metrics()[yee].name, "yee_pixels");
+  for (Measurement& run : comparison.scenes[0].runs) {
+    if (run.sampler == 1 && run.seed == 2) run.errors[yee] = 0.0;
+  }
+  const auto summary = summarize(comparison);
+  const auto& row = summary["scenes"][0]["equal_time"]["budgets"][0]["samplers"][1];
+  EXPECT_TRUE(row["yee_pixels"]["ratio"].is_null());
+  EXPECT_NEAR(row["yee_pixels"]["median"], 1234.0, 1e-6);
+  EXPECT_FALSE(row["yee_share"]["ratio"].is_null());
+  EXPECT_NE(squeezed(results_table(summary)).find(" 1234 - "), std::string::npos);
+}
+
+TEST(Summary, TheTableShowsFiveMetricsInAHundredColumns) {
+  const auto summary = summarize(
+      made_comparison({{"random", 1, always_one}, {"cpt", 1, above}, {"owen", 1, below}}, 8));
+  const std::string table = results_table(summary);
+  EXPECT_NE(squeezed(table).find(" sampler RMSE relMSE FLIP Yee pixels low-pass RMSE "),
+            std::string::npos)
+      << table;
+  for (const char* absent : {"SSIM", "ssim", "HDR", "SMAPE", "smape", "trimmed", "share"}) {
+    EXPECT_EQ(table.find(absent), std::string::npos) << absent;
+  }
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100u) << line;
+  EXPECT_NE(squeezed(table).find(" owen 0.0794 x0.63* 0.0063 x0.40* 0.0794 x0.63* 1234 x1.00 "),
+            std::string::npos)
+      << table;
+  EXPECT_EQ(summary["metrics"].size(), metrics().size());
+}
+
+TEST(Summary, TheTableEndsWithTheVerdict) {
+  const auto summary =
+      summarize(made_comparison({{"random", 1, always_one}, {"cpt", 1, above}}, 8));
+  const std::string sentence = summary["verdicts"][0]["sentence"];
+  EXPECT_TRUE(squeezed(results_table(summary)).ends_with(sentence + ' '));
+}
+
+TEST(Verdict, NamesThoseThatLoseAndTheBest) {
+  const std::vector<MadeSampler> samplers = {
+      {"random", 1, always_one}, {"cpt", 1, above}, {"rcs", 1, about_one}, {"owen", 1, below}};
+  const auto verdict = summarize(made_comparison(samplers, 8))["verdicts"][0];
+  EXPECT_EQ(verdict["scene"], "made");
+  EXPECT_EQ(verdict["depth"], 3);
+  EXPECT_EQ(verdict["metric"], "flip_ldr");
+  EXPECT_TRUE(
+      std::string(verdict["sentence"])
+          .starts_with("made, depth 3, by FLIP: loses to random at equal time: cpt (x1.23 ["))
+      << verdict["sentence"];
+  EXPECT_TRUE(std::string(verdict["sentence"])
+                  .ends_with("; no difference to random shown: rcs; best at 64 s: owen."))
+      << verdict["sentence"];
+  ASSERT_EQ(verdict["loses_to_random"].size(), 1u);
+  EXPECT_EQ(verdict["loses_to_random"][0]["sampler"], "cpt");
+  EXPECT_EQ(verdict["loses_to_random"][0]["ratios"].size(), 3u) << "64, 16 and 4 seconds";
+  EXPECT_GT(verdict["loses_to_random"][0]["ratios"][0]["interval_95"][0], 1.0);
+  EXPECT_EQ(verdict["beats_random"][0]["sampler"], "owen");
+  EXPECT_EQ(verdict["no_difference_shown"][0]["sampler"], "rcs");
+  EXPECT_EQ(verdict["best"]["sampler"], "owen");
+}
+
+TEST(Verdict, IsAboutTimeNotSamples) {
+  // Twice the time for a sample, a quarter less error: 1.06 times random's at equal time.
+  const auto better = [](int, std::uint32_t seed) { return 0.75 + 0.001 * seed; };
+  EXPECT_NE(verdict_on({{"random", 1, always_one}, {"owen", 2, better}}, 8)
+                .find("loses to random at equal time: owen (x1.0"),
+            std::string::npos);
+}
+
+TEST(Verdict, SaysWhereNoneLoses) {
+  EXPECT_EQ(verdict_on({{"random", 1, always_one}, {"owen", 1, below}}, 8),
+            "made, depth 3, by FLIP: none loses to random at equal time; best at 64 s: owen.");
+  EXPECT_EQ(verdict_on({{"random", 1, always_one}, {"rcs", 1, about_one}}, 8),
+            "made, depth 3, by FLIP: none loses to random at equal time; no difference to random "
+            "shown: rcs; best at 64 s: random (no difference shown to rcs).");
+}
+
+TEST(Verdict, ALossAtAnyTimeCounts) {
+  const auto at_first = [](int spp, std::uint32_t seed) {
+    return (spp > 4 ? 0.7 : 1.4) + 0.01 * seed;
+  };
+  const std::string sentence = verdict_on({{"random", 1, always_one}, {"rcs", 1, at_first}}, 8);
+  EXPECT_NE(sentence.find("loses to random at equal time: rcs (x1.4"), std::string::npos);
+  EXPECT_NE(sentence.find("at 4 s); best at 64 s: rcs."), std::string::npos) << sentence;
+}
+
+TEST(Verdict, ClaimsNothingWithoutAnInterval) {
+  EXPECT_EQ(verdict_on({{"random", 1, always_one}, {"cpt", 1, above}}, 3),
+            "made, depth 3, by FLIP: no difference to random shown: cpt (an interval needs 4 "
+            "seeds); best at 64 s: random (no difference shown to cpt).");
+}
+
+TEST(Verdict, SaysWhatItCannotJudge) {
+  EXPECT_EQ(verdict_on({{"owen", 1, always_one}, {"cpt", 1, above}}, 8),
+            "made, depth 3, by FLIP: random was not run; best at 64 s: owen.");
+  const auto zero = [](int, std::uint32_t) { return 0.0; };
+  EXPECT_NE(verdict_on({{"random", 1, always_one}, {"owen", 1, zero}}, 8)
+                .find("not judged, with no time in common or an error of 0: owen"),
+            std::string::npos);
+  EXPECT_TRUE(summarize(made_comparison({{"random", 1, always_one}}, 8))["verdicts"].empty());
+}
+
+TEST(Verdict, FallsBackToTimesInCommonWithRandom) {
+  // owen ends before cpt begins; each overlaps with random.
+  const std::string sentence =
+      verdict_on({{"random", 1, always_one}, {"owen", 0.125, below}, {"cpt", 8, above}}, 8);
+  EXPECT_NE(sentence.find("loses to random at equal time: cpt (x"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("no time is common to all, so none is best"), std::string::npos);
+  EXPECT_EQ(sentence.find("not judged"), std::string::npos);
 }
 
 TEST(Summary, BiasedSamplersAreMarked) {
@@ -185,6 +387,19 @@ TEST(Compare, MeasuresEveryCombinationOnce) {
     EXPECT_TRUE(fs::exists(folder.path / file)) << file;
   }
   EXPECT_GT(comparison.scenes[0].reference.relmse.value_or(0.0), 0.0);
+}
+
+TEST(Compare, AveragesTheSpectraOfAllSeeds) {
+  const TemporaryFolder folder;
+  const Comparison comparison = compare(small_settings(folder.path), {});
+  const SceneComparison& scene = comparison.scenes[0];
+  ASSERT_EQ(scene.spectra.size(), 2u * 3u);
+  for (const RunSpectrum& spectrum : scene.spectra) {
+    EXPECT_EQ(spectrum.renders, 2);
+    ASSERT_FALSE(spectrum.mean.rings.empty());
+    EXPECT_GT(spectrum.mean.rings[0].power, 0.0);
+    EXPECT_GT(spectrum.mean.white, 0.0);
+  }
 }
 
 TEST(Compare, TheReferenceIsKeptUntilSettingsChange) {

@@ -1,530 +1,227 @@
-// Sample values through the kernels: bits across widths, stratification, uniformity, independence.
+// What is true of every sampler: its values lie in [0, 1), are the same bits at every width and
+// depend on nothing but seed, pixel, sample and pair; whose sequence it is; and, where pixels are
+// meant to be independent, that they are.
+//
 // Statistics are taken with the widest kernel; that the others agree bit for bit is tested first.
-#include "packets/kernel.h"
-#include "samplers/make_state.h"
 #include "samplers/dimensions.h"
-#include "samplers/sampler.h"
-#include "tests/t_statistics.h"
+#include "samplers/index_shuffle.h"
+#include "tests/t_samples.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <set>
 
 namespace lockstep {
 namespace {
 
-// Values of one pair for (pixel, sample) couples, in their order.
-struct Couples {
-  std::vector<std::uint32_t> pixel, sample;
+constexpr float below_one = 1.0f - 0x1p-24f;
+const int some_pairs[] = {pixel_pair, sample_pair(0, Purpose::Light), sample_pair(4, Purpose::Bsdf),
+                          512, max_pairs - 1};
 
-  void add(std::uint32_t p, std::uint32_t s) {
-    pixel.push_back(p);
-    sample.push_back(s);
+// Bits ------------------------------------------------------------------------------------------
+
+// 300 paths of one tile, in no order, and no multiple of any width.
+Couples paths_of_a_tile(int width) {
+  Couples c;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    const std::uint32_t place = (i * 79u) % 256u;
+    const std::uint32_t x = 16 + place % 16, y = 16 + place / 16;
+    c.add(y * std::uint32_t(width) + x, 100u + (i * 31u) % 37u);
   }
-  std::size_t size() const { return pixel.size(); }
-};
-
-struct Values {
-  std::vector<float> u, v;
-  bool operator==(const Values&) const = default;
-};
-
-// Asks for the couples in the order of `path` (all of them, if empty) in one batch.
-Values draw_batch(const Kernel& kernel, const SamplerState& state, const Couples& c, int pair,
-                  const std::vector<std::int32_t>& path = {}) {
-  Couples batched = path.empty() ? c : Couples{};
-  for (const std::int32_t i : path) batched.add(c.pixel[size_t(i)], c.sample[size_t(i)]);
-  const auto n = batched.size();
-  const auto [low, high] = std::minmax_element(c.sample.begin(), c.sample.end());
-  // Behind the end: a pixel that exists, and any sample.
-  batched.pixel.resize(n + 16, batched.pixel.back());
-  batched.sample.resize(n + 16, 0xffffffffu);
-  Values values{std::vector<float>(n + 16), std::vector<float>(n + 16)};
-  const SampleBatch batch{batched.pixel.data(), batched.sample.data(), int(n), *low,
-                          int(*high - *low + 1)};
-  EXPECT_LE(batch.samples, max_samples_per_batch);
-  kernel.fill_pair(state, batch, pair, values.u.data(), values.v.data());
-  values.u.resize(n);
-  values.v.resize(n);
-  return values;
+  return c;
 }
 
-// All samples [first, first + count) of one pixel.
-Values draw(const SamplerState& state, std::uint32_t pixel, int pair, std::uint32_t first,
-            std::uint32_t count) {
-  const Kernel& kernel = find_kernel(available_isas().back(), 0);
-  Values all;
-  for (std::uint32_t done = 0; done < count; done += max_samples_per_batch) {
-    Couples c;
-    const std::uint32_t n = std::min<std::uint32_t>(max_samples_per_batch, count - done);
-    for (std::uint32_t k = 0; k < n; ++k) c.add(pixel, first + done + k);
-    const Values part = draw_batch(kernel, state, c, pair);
-    all.u.insert(all.u.end(), part.u.begin(), part.u.end());
-    all.v.insert(all.v.end(), part.v.begin(), part.v.end());
+// Some of them in another order, and one of them twice.
+std::vector<std::size_t> some_of(std::size_t count) {
+  std::vector<std::size_t> some;
+  for (std::size_t i = 0; i < 101; ++i) some.push_back((i * 83 + 5) % count);
+  some.push_back(some.front());
+  return some;
+}
+
+void expect_same_at_all_widths(const SamplerState& state, int pair) {
+  const Couples all = paths_of_a_tile(state.width);
+  const auto some = some_of(all.pixel.size());
+  Couples few;
+  for (const std::size_t i : some) few.add(all.pixel[i], all.sample[i]);
+  const Values expected = draw_batch(find_kernel(Isa::Sse4, 1), state, all, pair);
+  Values expected_few;
+  for (const std::size_t i : some) {
+    expected_few.u.push_back(expected.u[i]);
+    expected_few.v.push_back(expected.v[i]);
   }
-  return all;
-}
-
-SamplerState state_of(std::string_view text, std::uint32_t seed = 7) {
-  return make_state(parse_sampler(text), seed);
-}
-
-const char* const samplers[] = {"random",
-                                "owen",
-                                "cpt",
-                                "cpt:sequence=random",
-                                "rcs:weight=0",
-                                "rcs:weight=0.3,offset=fresh",
-                                "rcs:weight=1,offset=fresh",
-                                "rcs:weight=0.3,offset=fresh,sequence=random",
-                                "rcs:weight=0.3,offset=constant",
-                                "rcs:weight=1,offset=constant"};
-
-// Correlation of two equally long series, as a standard normal under independence.
-double correlation_z(const std::vector<float>& a, const std::vector<float>& b) {
-  Moments ma, mb;
-  for (const float x : a) ma.add(double(x));
-  for (const float x : b) mb.add(double(x));
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += (double(a[i]) - ma.mean) * (double(b[i]) - mb.mean);
-  }
-  const double n = double(a.size());
-  return sum / std::sqrt(ma.squares * mb.squares) * std::sqrt(n);
-}
-
-// Evenness of points over n x n cells.
-double joint_evenness(const std::vector<float>& a, const std::vector<float>& b, int n) {
-  std::vector<std::uint32_t> cells(size_t(n) * size_t(n));
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ++cells[size_t(a[i] * float(n)) * size_t(n) + size_t(b[i] * float(n))];
-  }
-  return evenness(cells);
-}
-
-double evenness_of(const std::vector<float>& a, int n) {
-  std::vector<std::uint32_t> cells(static_cast<size_t>(n));
-  for (const float x : a) ++cells[size_t(x * float(n))];
-  return evenness(cells);
-}
-
-// Values of all paths, and of the listed ones by themselves, at W = 4, 8, 16 as at W = 1.
-void expect_same_at_all_widths(const SamplerState& state, const Couples& c, int pair,
-                               const std::vector<std::int32_t>& some) {
   for (const Isa isa : available_isas()) {
-    const Values all = draw_batch(find_kernel(isa, 1), state, c, pair);
     for (const int width : {1, 4, 8, 16}) {
       const Kernel& kernel = find_kernel(isa, width);
-      ASSERT_EQ(draw_batch(kernel, state, c, pair), all) << name(isa) << ' ' << width;
-      const Values few = draw_batch(kernel, state, c, pair, some);
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        ASSERT_EQ(few.u[i], all.u[size_t(some[i])]) << name(isa) << ' ' << width;
-        ASSERT_EQ(few.v[i], all.v[size_t(some[i])]) << name(isa) << ' ' << width;
-      }
+      ASSERT_EQ(draw_batch(kernel, state, all, pair), expected) << name(isa) << ' ' << width;
+      ASSERT_EQ(draw_batch(kernel, state, few, pair), expected_few) << name(isa) << ' ' << width;
     }
   }
 }
 
-TEST(Samplers, AllWidthsGiveTheSameBits) {
-  Couples c;
-  for (std::uint32_t i = 0; i < 300; ++i) c.add((i * 7919u) % 1000u, 100u + (i * 31u) % 37u);
-  std::vector<float> map(1000);
+TEST(Samplers, WidthsInstructionSetsAndBatchesGiveTheSameBits) {
+  const SamplePlan plan{48, 48, 37};
+  std::vector<float> map(48 * 48);
   for (std::size_t i = 0; i < map.size(); ++i) map[i] = float(i % 11) / 10.0f;
-  // Some of the paths, out of order, and one of them twice; no multiple of any width.
-  std::vector<std::int32_t> some;
-  for (int i = 0; i < 101; ++i) some.push_back((i * 83 + 5) % 300);
-  some.push_back(some.front());
-
-  for (const char* text : samplers) {
-    for (const bool mapped : {false, true}) {
-      SamplerState state = state_of(text);
-      if (mapped) state.weights = map.data();
-      SCOPED_TRACE(std::string(text) + (mapped ? " with a map" : ""));
-      for (const int pair : {pixel_pair, sample_pair(0, Purpose::Light),
-                             sample_pair(max_depth - 1, Purpose::Roulette)}) {
-        expect_same_at_all_widths(state, c, pair, some);
-      }
-    }
+  for (const std::string& text : all_samplers()) {
+    SCOPED_TRACE(text);
+    SamplerState state = state_of(text, 7, plan);
+    for (const int pair : some_pairs) expect_same_at_all_widths(state, pair);
+    if (state.shared_pairs == 0 || state.perturbation == PerturbationId{}) continue;
+    state.weights = map.data();
+    state.interleave = 4;
+    expect_same_at_all_widths(state, 1);
   }
 }
 
-// Products and sums are fused where the instruction set has it, which perturb() may show.
-TEST(Samplers, InstructionSetsAgreeToTheLastBits) {
-  Couples c;
-  for (std::uint32_t i = 0; i < 256; ++i) c.add(i * 7919u, i);
-  for (const char* text : samplers) {
-    const SamplerState state = state_of(text);
-    const Values first = draw_batch(find_kernel(Isa::Sse4, 1), state, c, 2);
-    for (const Isa isa : available_isas()) {
-      const Values values = draw_batch(find_kernel(isa, 0), state, c, 2);
-      if (state.perturbation == Perturbation::None) {
-        EXPECT_EQ(values, first) << text;
-        continue;
-      }
-      for (std::size_t i = 0; i < values.u.size(); ++i) {
-        const double gap = std::abs(double(values.u[i]) - double(first.u[i]));
-        EXPECT_LE(std::min(gap, 1.0 - gap), 0x1p-23) << text;
-      }
-    }
-  }
-}
-
-TEST(Samplers, AValueDoesNotDependOnItsBatch) {
-  const Kernel& kernel = find_kernel(available_isas().back(), 0);
-  for (const char* text : samplers) {
-    const SamplerState state = state_of(text);
-    const Values all = draw(state, 12, 3, 0, 64);
+TEST(Samplers, AValueDoesNotDependOnTheSamplesBesideIt) {
+  for (const std::string& text : all_samplers()) {
+    const SamplerState state = state_of(text, 7, {32, 32, 64});
+    const Values all = draw(state, 12, 2, 0, 64);
     for (const std::uint32_t k : {0u, 1u, 17u, 63u}) {
-      Couples one;
-      one.add(12, k);
-      const Values alone = draw_batch(kernel, state, one, 3);
+      const Values alone = draw(state, 12, 2, k, 1);
       EXPECT_EQ(alone.u[0], all.u[k]) << text;
       EXPECT_EQ(alone.v[0], all.v[k]) << text;
     }
   }
 }
 
+// Range -----------------------------------------------------------------------------------------
+
+void expect_in_unit_interval(const Values& values) {
+  for (const float x : values.u) ASSERT_TRUE(x >= 0.0f && x < 1.0f) << x;
+  for (const float x : values.v) ASSERT_TRUE(x >= 0.0f && x < 1.0f) << x;
+}
+
+// Samplers x weights x blocks of indices, with the other parameters taking turns.
 TEST(Samplers, ValuesLieInTheUnitInterval) {
-  for (const char* text : samplers) {
-    for (const std::uint32_t seed : {0u, 1u, 0xffffffffu}) {
-      for (const std::uint32_t first : {0u, 0x7fffff00u, 0xfffff000u}) {
-        const Values values = draw(state_of(text, seed), 0xfffffffeu % 999u, 5, first, 2048);
-        for (const float x : values.u) ASSERT_TRUE(x >= 0.0f && x < 1.0f) << text;
-        for (const float x : values.v) ASSERT_TRUE(x >= 0.0f && x < 1.0f) << text;
+  const std::vector<std::uint32_t> first = {
+      0, (1u << 12) - 8, (1u << 16) - 8, 1u << 24, (1u << 31) - 8, 0xfffffff0u, 0xfffffffcu};
+  const std::vector<SamplePlan> plans = {{1, 1, 1},           {1, 16384, 2},    {3, 5, 7},
+                                         {512, 512, 16},      {512, 300, 1000}, {16384, 16384, 256},
+                                         {16384, 2, 1u << 24}};
+  const std::vector<std::uint32_t> pixels = {0, 1, 2, 511, 16383, (1u << 20) + 3, (1u << 28) - 1};
+  const std::vector<int> pairs = {0, 1, 2, 15, 16, 511, 512, 1023, 4095};
+  const std::vector<std::uint32_t> seeds = {0, 1, 0x80000000u, 0xffffffffu};
+  std::size_t turn = 0;
+  for (const std::string& text : all_samplers()) {
+    for (const float weight : {0.0f, 1e-7f, 1.0f / 64, 0.125f, 0.5f, below_one, 1.0f}) {
+      for (const std::uint32_t from : first) {
+        const SamplePlan plan = plans[turn % plans.size()];
+        SamplerState state = state_of(text, seeds[turn % seeds.size()], plan);
+        state.weight = weight;
+        turn += 1;
+        const std::uint32_t pixel = pixels[turn / 5 % pixels.size()];
+        const int pair = pairs[turn / 3 % pairs.size()];
+        SCOPED_TRACE(text + " w " + std::to_string(weight) + " from " + std::to_string(from) +
+                     " pixel " + std::to_string(pixel) + " pair " + std::to_string(pair) +
+                     " planned " + std::to_string(plan.samples));
+        expect_in_unit_interval(
+            draw(state, pixel, pair, from, std::min(16u, 0xffffffffu - from + 1u)));
+        if (HasFatalFailure()) return;
       }
     }
   }
 }
+
+// Keys ------------------------------------------------------------------------------------------
 
 TEST(Samplers, SeedsPixelsPairsAndSamplesAllCount) {
-  for (const char* text : samplers) {
-    const Values base = draw(state_of(text, 7), 12, 3, 0, 64);
-    EXPECT_NE(draw(state_of(text, 8), 12, 3, 0, 64), base) << text;
-    EXPECT_NE(draw(state_of(text, 7), 12, 4, 0, 64), base) << text;
-    EXPECT_NE(draw(state_of(text, 7), 12, 3, 64, 64), base) << text;
+  const SamplePlan plan{64, 64, 64};
+  for (const std::string& text : all_samplers()) {
+    const SamplerState state = state_of(text, 7, plan);
+    const Values base = draw(state, 12, 1, 0, 64);
+    EXPECT_NE(draw(state_of(text, 8, plan), 12, 1, 0, 64), base) << text;
+    EXPECT_NE(draw(state, 12, 2, 0, 64), base) << text;
+    EXPECT_NE(draw(state, 12, 1, 64, 64), base) << text;
     EXPECT_NE(base.u, base.v) << text;
-    const SamplerState state = state_of(text);
-    const bool own =
-        !state.shared || (state.perturbation != Perturbation::None && state.weight > 0.0f);
-    EXPECT_EQ(draw(state, 13, 3, 0, 64) != base, own) << text;
+    const bool moved = state.perturbation != PerturbationId{};
+    EXPECT_EQ(draw(state, 13, 1, 0, 64) != base, moved || state.share == Share::Pixel) << text;
+    EXPECT_EQ(draw(state, 17, 1, 0, 64) != base, moved || state.share != Share::Image) << text;
   }
 }
 
-// Nets -----------------------------------------------------------------------------------------
-
-// True where every elementary interval of area 1/n holds exactly one of the n = 2^bits points.
-bool is_net(const Values& points, int bits) {
-  for (int along_u = 0; along_u <= bits; ++along_u) {
-    const int columns = 1 << along_u, rows = 1 << (bits - along_u);
-    std::vector<bool> taken(size_t(1) << bits, false);
-    for (std::size_t i = 0; i < points.u.size(); ++i) {
-      const std::size_t cell = size_t(points.v[i] * float(rows)) * size_t(columns) +
-                               size_t(points.u[i] * float(columns));
-      if (taken[cell]) return false;
-      taken[cell] = true;
+TEST(Samplers, PairsFromTheLastSharedOnAreThePixelsOwn) {
+  for (const std::string& sequence : sequence_names()) {
+    const SamplePlan plan{64, 64, 16};
+    const SamplerState own = state_of(sequence, 7, plan);
+    const SamplerState shared = state_of(sequence + ":share=image,pairs=3", 7, plan);
+    for (const std::uint32_t pixel : {0u, 99u}) {
+      EXPECT_EQ(draw(shared, pixel, 3, 0, 64), draw(own, pixel, 3, 0, 64)) << sequence;
+      EXPECT_EQ(draw(shared, pixel, 9, 0, 64), draw(own, pixel, 9, 0, 64)) << sequence;
+      EXPECT_NE(draw(shared, pixel, 2, 0, 64), draw(own, pixel, 2, 0, 64)) << sequence;
     }
+    EXPECT_EQ(draw(shared, 0, 2, 0, 64), draw(shared, 99, 2, 0, 64)) << sequence;
   }
-  return true;
 }
 
-TEST(OwenSampler, EveryAlignedBlockIsANet) {
-  for (const std::uint32_t seed : {0u, 1u, 12345u}) {
-    const SamplerState state = state_of("owen", seed);
-    for (const std::uint32_t pixel : {0u, 1u, 511u, 1000003u}) {
-      for (const int pair :
-           {pixel_pair, sample_pair(0, Purpose::Light), sample_pair(1, Purpose::Bsdf), 4095}) {
-        for (int bits = 0; bits <= 10; ++bits) {
-          const std::uint32_t n = 1u << bits;
-          for (const std::uint32_t block : {0u, 1u, 2u, 5u}) {
-            ASSERT_TRUE(is_net(draw(state, pixel, pair, block * n, n), bits))
-                << "seed " << seed << " pixel " << pixel << " pair " << pair << " block " << block
-                << " of " << n;
+TEST(Samplers, InterleavedPixelsShareAcrossTheirStride) {
+  for (const std::string& sequence : sequence_names()) {
+    for (const char* share : {"tile", "image"}) {
+      const SamplerState one = state_of(sequence + ":share=" + share, 7, {64, 64, 16});
+      for (const int n : {2, 4}) {
+        SamplerState state = one;
+        state.interleave = n;
+        std::set<std::vector<float>> groups;
+        for (std::uint32_t y = 0; y < 8; ++y) {
+          for (std::uint32_t x = 0; x < 8; ++x) {
+            groups.insert(draw(state, y * 64 + x, 1, 0, 16).u);
+            const std::uint32_t base = y % std::uint32_t(n) * 64 + x % std::uint32_t(n);
+            ASSERT_EQ(draw(state, y * 64 + x, 1, 0, 16), draw(state, base, 1, 0, 16)) << sequence;
           }
         }
+        EXPECT_EQ(int(groups.size()), n * n) << sequence;
+        EXPECT_EQ(draw(state, 0, 1, 0, 16), draw(one, 0, 1, 0, 16)) << sequence;
       }
     }
   }
 }
 
-TEST(OwenSampler, NoUnalignedBlockHasToBeANet) {
-  // Guards the test above: it can tell a net from other points.
-  EXPECT_FALSE(is_net(draw(state_of("owen"), 3, 2, 128, 256), 8));
-  EXPECT_FALSE(is_net(draw(state_of("random"), 3, 2, 0, 16), 4));
-}
-
-TEST(SharedOwenSampler, EveryAlignedBlockIsANet) {
-  for (const std::uint32_t pixel : {0u, 77u}) {
-    EXPECT_TRUE(is_net(draw(state_of("cpt"), pixel, 2, 256, 256), 8));
+TEST(PermutedIndex, IsAPermutationOfEveryRange) {
+  std::vector<std::uint32_t> counts(200);
+  std::iota(counts.begin(), counts.end(), 1u);
+  for (const std::uint32_t more : {255u, 256u, 257u, 1000u, 4096u, 65535u, 65536u}) {
+    counts.push_back(more);
   }
-}
-
-// A fixed offset keeps every row and column of cells evenly filled, to within the cells that the
-// rotation cuts; fresh offsets do not.
-TEST(SharedOwenSampler, AConstantOffsetKeepsStratification) {
-  const auto worst_row = [](const Values& points, int rows) {
-    std::vector<int> count(static_cast<size_t>(rows));
-    for (const float x : points.u) ++count[size_t(x * float(rows))];
-    const auto [low, high] = std::minmax_element(count.begin(), count.end());
-    return *high - *low;
-  };
-  const Values constant = draw(state_of("rcs:weight=1,offset=constant"), 5, 2, 0, 1024);
-  const Values fresh = draw(state_of("rcs:weight=1,offset=fresh"), 5, 2, 0, 1024);
-  EXPECT_LE(worst_row(constant, 32), 2);
-  EXPECT_GT(worst_row(fresh, 32), 8);
-}
-
-// Over seeds every single point is uniform: what makes the sampler unbiased.
-TEST(OwenSampler, EachPointIsUniformOverSeedsPixelsAndPairs) {
-  const int tests = 3 * 4 * 3;
-  for (const char* text : {"owen", "cpt", "random"}) {
-    for (const std::uint32_t k : {0u, 1u, 6u, 63u}) {
-      std::vector<float> u, v;
-      for (std::uint32_t i = 0; i < 8192; ++i) {
-        const Values one = draw(state_of(text, i), i % 7, int(i % 5), k, 1);
-        u.push_back(one.u[0]);
-        v.push_back(one.v[0]);
-      }
-      EXPECT_GT(evenness_of(u, 64), sidak(significance, tests)) << text << ' ' << k;
-      EXPECT_GT(evenness_of(v, 64), sidak(significance, tests)) << text << ' ' << k;
-      EXPECT_GT(joint_evenness(u, v, 16), sidak(significance, tests)) << text << ' ' << k;
-    }
-  }
-}
-
-// Uniformity and independence -------------------------------------------------------------------
-
-constexpr std::uint32_t many = 1 << 16;
-
-TEST(RandomSampler, IsUniformInOneAndTwoDimensions) {
-  const std::uint32_t seeds[] = {0, 1, 99};
-  const double limit = sidak(significance, 3 * 3 * 3);
-  for (const std::uint32_t seed : seeds) {
-    for (const std::uint32_t pixel : {0u, 1u, 262143u}) {
-      const Values x = draw(state_of("random", seed), pixel, 2, 0, many);
-      EXPECT_GT(evenness_of(x.u, 1024), limit);
-      EXPECT_GT(evenness_of(x.v, 1024), limit);
-      EXPECT_GT(joint_evenness(x.u, x.v, 32), limit);
-    }
-  }
-}
-
-TEST(RandomSampler, LowBitsAreUniformToo) {
-  const Values x = draw(state_of("random"), 3, 2, 0, many);
-  std::vector<float> low;
-  for (const float u : x.u) low.push_back(u * 65536.0f - std::floor(u * 65536.0f));
-  EXPECT_GT(evenness_of(low, 256), significance);
-}
-
-// The series of `text` at neighbouring samples, pixels, pairs and seeds.
-void expect_no_correlation(const char* text, bool between_pixels = true) {
-  std::vector<std::pair<const char*, double>> z;
-  const auto compare = [&](const char* what, const Values& a, const Values& b) {
-    z.emplace_back(what, correlation_z(a.u, b.u));
-    z.emplace_back(what, correlation_z(a.v, b.v));
-    z.emplace_back(what, correlation_z(a.u, b.v));
-  };
-  const Values base = draw(state_of(text, 7), 100, 2, 0, many);
-  z.emplace_back("u and v", correlation_z(base.u, base.v));
-  for (const std::uint32_t lag : {1u, 2u, 4u, 16u, 256u}) {
-    compare("samples", base, draw(state_of(text, 7), 100, 2, lag, many));
-  }
-  if (between_pixels) {
-    for (const std::uint32_t pixel : {101u, 102u, 612u, 228u}) {
-      compare("pixels", base, draw(state_of(text, 7), pixel, 2, 0, many));
-    }
-  }
-  for (const int pair : {0, 3, 4, 6, 10}) {
-    compare("pairs", base, draw(state_of(text, 7), 100, pair, 0, many));
-  }
-  for (const std::uint32_t seed : {6u, 8u, 0u, 0x80000007u}) {
-    compare("seeds", base, draw(state_of(text, seed), 100, 2, 0, many));
-  }
-  for (const auto& [what, value] : z) {
-    EXPECT_GT(normal_tail(value), sidak(significance, double(z.size()))) << text << ", " << what;
-  }
-}
-
-TEST(RandomSampler, IsUncorrelatedAlongEveryAxis) { expect_no_correlation("random"); }
-
-// Stratified sequences are less correlated than chance allows, except that neighbours in k of one
-// sequence avoid each other: lags are left to the net tests.
-TEST(OwenSampler, IsUncorrelatedBetweenPixelsPairsAndSeeds) {
-  constexpr std::uint32_t n = 4096;
-  const auto series = [](std::uint32_t seed, std::uint32_t pixel, int pair) {
-    return draw(state_of("owen", seed), pixel, pair, 0, n);
-  };
-  const Values base = series(7, 100, 2);
-  std::vector<double> z{correlation_z(base.u, base.v)};
-  for (const std::uint32_t pixel : {101u, 102u, 228u, 612u}) {
-    z.push_back(correlation_z(base.u, series(7, pixel, 2).u));
-    z.push_back(correlation_z(base.v, series(7, pixel, 2).v));
-  }
-  for (const int pair : {0, 3, 4, 6}) z.push_back(correlation_z(base.u, series(7, 100, pair).u));
-  for (const std::uint32_t s : {6u, 8u}) z.push_back(correlation_z(base.u, series(s, 100, 2).u));
-  for (const double value : z) {
-    EXPECT_GT(normal_tail(value), sidak(significance, double(z.size()))) << value;
-  }
-}
-
-TEST(OwenSampler, TheFirstPointsOfPixelsAreIndependent) {
-  std::vector<float> u, next, other_pair;
-  for (std::uint32_t pixel = 0; pixel < many; ++pixel) {
-    const Values here = draw(state_of("owen"), pixel, 2, 0, 1);
-    u.push_back(here.u[0]);
-    other_pair.push_back(draw(state_of("owen"), pixel, 3, 0, 1).u[0]);
-    if (pixel > 0) next.push_back(here.u[0]);
-  }
-  const double limit = sidak(significance, 3);
-  EXPECT_GT(joint_evenness(u, other_pair, 16), limit);
-  EXPECT_GT(evenness_of(u, 256), limit);
-  u.pop_back();
-  EXPECT_GT(joint_evenness(u, next, 16), limit);
-}
-
-// Shared sequences ------------------------------------------------------------------------------
-
-TEST(SharedSampler, AllPixelsGetTheSamePoint) {
-  for (const char* text : {"cpt", "cpt:sequence=random", "rcs:weight=0"}) {
-    const Values first = draw(state_of(text), 0, 4, 0, 256);
-    for (const std::uint32_t pixel : {1u, 2u, 512u, 999999u}) {
-      EXPECT_EQ(draw(state_of(text), pixel, 4, 0, 256), first) << text;
-    }
-  }
-}
-
-TEST(SharedSampler, NoWeightIsCoherentPathTracing) {
-  const std::vector<float> zeros(64, 0.0f);
-  for (const int pair : {0, 2, 9}) {
-    const Values cpt = draw(state_of("cpt"), 9, pair, 0, 256);
-    EXPECT_EQ(draw(state_of("rcs:weight=0,offset=fresh"), 9, pair, 0, 256), cpt);
-    EXPECT_EQ(draw(state_of("rcs:weight=0,offset=constant"), 9, pair, 0, 256), cpt);
-    SamplerState mapped = state_of("rcs:weight=1,offset=fresh");
-    mapped.weights = zeros.data();
-    EXPECT_EQ(draw(mapped, 9, pair, 0, 256), cpt);
-  }
-}
-
-TEST(SharedSampler, AMapGivesEachPixelItsWeight) {
-  const float map[] = {0.0f, 0.3f, 1.0f};
-  SamplerState mapped = state_of("rcs:weight=0.5,offset=fresh");
-  mapped.weights = map;
-  EXPECT_EQ(draw(mapped, 0, 2, 0, 64), draw(state_of("rcs:weight=0"), 0, 2, 0, 64));
-  EXPECT_EQ(draw(mapped, 1, 2, 0, 64), draw(state_of("rcs:weight=0.3,offset=fresh"), 1, 2, 0, 64));
-  EXPECT_EQ(draw(mapped, 2, 2, 0, 64), draw(state_of("rcs:weight=1,offset=fresh"), 2, 2, 0, 64));
-}
-
-// How far `a` is ahead of `b` on the circle, in [0, 1).
-float ahead(float a, float b) { return a < b ? a - b + 1.0f : a - b; }
-
-TEST(SharedSampler, PixelsStayWithinTheirWeightOfTheSequence) {
-  for (const char* weight : {"0.01", "0.1", "0.5"}) {
-    const float w = std::stof(weight);
-    for (const char* offset : {"fresh", "constant"}) {
-      const auto text = std::string("rcs:weight=") + weight + ",offset=" + offset;
-      const Values shared = draw(state_of("cpt"), 0, 2, 0, 1024);
-      const Values own = draw(state_of(text), 44, 2, 0, 1024);
-      for (std::size_t k = 0; k < shared.u.size(); ++k) {
-        // Rounding may put a value an ulp behind, which reads as nearly 1 ahead.
-        const float du = ahead(own.u[k] + 1e-6f, shared.u[k]);
-        const float dv = ahead(own.v[k] + 1e-6f, shared.v[k]);
-        ASSERT_TRUE(du <= w + 2e-6f && dv <= w + 2e-6f) << text;
+  for (const std::uint32_t count : counts) {
+    for (const std::uint32_t key : {0u, 1u, 0x9e3779b9u, 0xffffffffu}) {
+      std::vector<bool> taken(count, false);
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t place = permuted_index(i, count, key);
+        ASSERT_LT(place, count);
+        ASSERT_FALSE(taken[place]) << count << ' ' << key;
+        taken[place] = true;
       }
     }
   }
 }
 
-TEST(SharedSampler, AConstantOffsetDoesNotDependOnTheSample) {
-  const Values shared = draw(state_of("cpt"), 0, 2, 0, 512);
-  const Values own = draw(state_of("rcs:weight=0.7,offset=constant"), 44, 2, 0, 512);
-  const float u = ahead(own.u[0], shared.u[0]), v = ahead(own.v[0], shared.v[0]);
-  EXPECT_NE(u, v);
-  for (std::size_t k = 0; k < shared.u.size(); ++k) {
-    ASSERT_NEAR(ahead(own.u[k], shared.u[k]), u, 1e-6f);
-    ASSERT_NEAR(ahead(own.v[k], shared.v[k]), v, 1e-6f);
-  }
-  // Other pixels and pairs have offsets of their own.
-  std::set<float> offsets;
-  for (std::uint32_t pixel = 0; pixel < 64; ++pixel) {
-    for (const int pair : {2, 3}) {
-      const float here = draw(state_of("rcs:weight=0.7,offset=constant"), pixel, pair, 0, 1).u[0];
-      offsets.insert(ahead(here, draw(state_of("cpt"), 0, pair, 0, 1).u[0]));
-    }
-  }
-  EXPECT_EQ(offsets.size(), 128u);
-}
-
-TEST(SharedSampler, EveryPixelIsUniformAtEveryWeight) {
-  const std::vector<std::string> weights = {"0.001", "0.1", "0.3", "0.5", "0.9", "1"};
-  const double limit = sidak(significance, 3.0 * double(weights.size()));
-  for (const std::string& w : weights) {
-    // A random sequence: with a stratified one counts would be too even for chi-square.
-    const Values x = draw(state_of("rcs:sequence=random,offset=fresh,weight=" + w), 31, 2, 0, many);
-    EXPECT_GT(evenness_of(x.u, 256), limit) << w;
-    EXPECT_GT(evenness_of(x.v, 256), limit) << w;
-    EXPECT_GT(joint_evenness(x.u, x.v, 16), limit) << w;
-  }
-}
-
-TEST(SharedSampler, FullWeightMakesNeighboursIndependent) {
-  const double limit = sidak(significance, 2 * 4);
-  for (const char* text :
-       {"rcs:weight=1,offset=fresh", "rcs:weight=1,offset=fresh,sequence=random"}) {
-    const Values a = draw(state_of(text), 40, 2, 0, many);
-    for (const std::uint32_t neighbour : {41u, 552u}) {
-      const Values b = draw(state_of(text), neighbour, 2, 0, many);
-      EXPECT_GT(joint_evenness(a.u, b.u, 32), limit) << text;
-      EXPECT_GT(joint_evenness(a.u, b.v, 32), limit) << text;
-    }
-  }
-  expect_no_correlation("rcs:weight=1,offset=fresh,sequence=random");
-}
-
-TEST(SharedSampler, PartialWeightKeepsNeighboursTogether) {
-  // The opposite of the test above, so that it is known to notice.
-  const Values a = draw(state_of("rcs:weight=0.3,offset=fresh"), 40, 2, 0, 4096);
-  const Values b = draw(state_of("rcs:weight=0.3,offset=fresh"), 41, 2, 0, 4096);
-  EXPECT_LT(joint_evenness(a.u, b.u, 16), 1e-9);
-}
-
-// At w = 1 the offset alone is what a pixel follows; it must not repeat the sequence's numbers.
-TEST(SharedSampler, TheOffsetIsIndependentOfTheSequence) {
-  const double limit = sidak(significance, 4);
-  const Values own = draw(state_of("random"), 0xffffffffu, 2, 0, many);
-  const Values shared = draw(state_of("cpt:sequence=random"), 5, 2, 0, many);
-  const Values perturbed =
-      draw(state_of("rcs:weight=1,sequence=random,offset=fresh"), 5, 2, 0, many);
-  std::vector<float> offset;
-  for (std::size_t k = 0; k < many; ++k) offset.push_back(ahead(perturbed.u[k], shared.u[k]));
-  for (float& x : offset) x = std::min(x, one_minus_epsilon);
-  EXPECT_GT(joint_evenness(shared.u, offset, 32), limit);
-  EXPECT_GT(joint_evenness(shared.u, perturbed.u, 32), limit);
-  EXPECT_GT(joint_evenness(draw(state_of("random"), 5, 2, 0, many).u, offset, 32), limit);
-  EXPECT_EQ(own, shared);  // the shared sequence is that of a pixel no image has
-}
-
-TEST(Perturb, NeverReachesOne) {
-  const float top = one_minus_epsilon, tiny = 0x1p-25f;
-  for (const float u : {0.0f, tiny, 0x1p-24f, 0.5f, 1.0f - 0x1p-23f, top}) {
-    for (const float w : {0.0f, 1e-30f, 1e-9f, 0x1p-24f, 0.3f, 1.0f - 0x1p-24f, 1.0f}) {
-      for (const float offset : {0.0f, 1e-30f, tiny, 0x1p-24f, 0.5f, 1.0f - 0x1p-23f, top}) {
-        const float x = perturb(u, w, offset);
-        ASSERT_TRUE(x >= 0.0f && x < 1.0f) << u << ' ' << w << ' ' << offset;
+// Lanes behind the last path hold any index, and must come to an end too.
+TEST(PermutedIndex, PutsIndicesFromOutsideInside) {
+  for (std::uint32_t count = 1; count < 70; ++count) {
+    for (std::uint32_t key = 0; key < 64; ++key) {
+      for (const std::uint32_t i : {count, count + 1, 2 * count, 63u, 127u, 0xffffffffu}) {
+        ASSERT_LT(permuted_index(i, count, pcg3d(key, count, 3u).x), count);
       }
     }
   }
-  // x - floor(x) of a tiny negative number rounds to exactly 1.
-  for (const float below : {-1e-9f, -1e-30f, -0x1p-26f}) {
-    EXPECT_EQ(perturb(below, 0.0f, 0.0f), top);
-    EXPECT_EQ(perturb(0.0f, 1.0f, below), top);
-  }
 }
 
-TEST(Perturb, AddsModuloOne) {
-  EXPECT_EQ(perturb(0.25f, 0.5f, 0.5f), 0.5f);
-  EXPECT_EQ(perturb(0.75f, 0.5f, 0.5f), 0.0f);
-  EXPECT_EQ(perturb(0.75f, 1.0f, 0.75f), 0.5f);
-  EXPECT_EQ(perturb(0.75f, 0.0f, 0.9f), 0.75f);
+// Every index comes to every place equally often, or nearly: its hash is no perfect shuffle.
+TEST(PermutedIndex, PutsEveryIndexEverywhere) {
+  for (const std::uint32_t count : {5u, 12u, 16u, 64u}) {
+    const std::uint32_t keys = 1024 * count;
+    std::vector<std::uint32_t> places(count * count);
+    for (std::uint32_t k = 0; k < keys; ++k) {
+      const std::uint32_t key = pcg3d(k, count, 7u).x;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        ++places[i * count + permuted_index(i, count, key)];
+      }
+    }
+    const auto [low, high] = std::minmax_element(places.begin(), places.end());
+    EXPECT_GT(*low, 1024u - 300u) << count;
+    EXPECT_LT(*high, 1024u + 300u) << count;
+  }
 }
 
 TEST(Dimensions, NoTwoPurposesShareAPair) {
@@ -537,7 +234,155 @@ TEST(Dimensions, NoTwoPurposesShareAPair) {
     }
   }
   EXPECT_EQ(int(pairs.size()), count);
-  EXPECT_LT(*pairs.rbegin(), 4096);
+  EXPECT_LT(*pairs.rbegin(), max_pairs);
+}
+
+// Uniformity and independence -------------------------------------------------------------------
+
+// p-values that are judged together.
+class Tests {
+ public:
+  void add(std::string what, double p) { all_.emplace_back(std::move(what), p); }
+  ~Tests() {
+    for (const auto& [what, p] : all_) {
+      EXPECT_GT(p, sidak(significance, double(all_.size()))) << what << " of " << all_.size();
+    }
+  }
+
+ private:
+  std::vector<std::pair<std::string, double>> all_;
+};
+
+// Over seeds every single point is uniform, and points of two pairs are independent, whatever is
+// shared and however pixels leave it: what makes samplers unbiased.
+TEST(Samplers, EachPathIsUniformOverSeeds) {
+  Tests tests;
+  for (const std::string& text : all_samplers()) {
+    for (const float weight : {1.0f, 1.0f / 64, 0.3f}) {
+      SamplerState state = state_of(text, 0, {20, 20, 12});
+      state.weight = weight;
+      Values one, two;
+      for (std::uint32_t seed = 0; seed < 2048; ++seed) {
+        state.seed = pcg3d(seed, 0u, 0x1ec5u).x;  // as renders have them
+        one.append(draw(state, 399, 1, 5, 1));
+        two.append(draw(state, 399, 3, 5, 1));
+      }
+      tests.add(text + ": u", evenness_of(one.u, 64));
+      tests.add(text + ": v", evenness_of(one.v, 64));
+      tests.add(text + ": u and v", joint_evenness(one.u, one.v, 8));
+      tests.add(text + ": pairs", joint_evenness(one.u, two.u, 16));
+      tests.add(text + ": pairs, crossed", joint_evenness(one.v, two.u, 16));
+      if (state.perturbation == PerturbationId{}) break;
+    }
+  }
+}
+
+// Those whose pixels are to be independent, with one sample of each in an image of this side.
+constexpr int side = 128;
+
+std::vector<std::string> independent_samplers() {
+  std::vector<std::string> all;
+  for (const std::string& sequence : sequence_names()) {
+    if (sequence != "zsobol") all.push_back(sequence);  // neighbours avoid each other
+    for (const char* offset : {"fresh", "constant"}) {
+      for (const char* mix : {"add", "xor"}) {
+        all.push_back(sequence + ":share=image,offset=" + offset + ",mix=" + mix);
+      }
+    }
+  }
+  return all;
+}
+
+// Every second value along x or y, and what follows it there.
+std::pair<std::vector<float>, std::vector<float>> neighbours(const std::vector<float>& image,
+                                                             int dx, int dy) {
+  std::vector<float> a, b;
+  for (int y = 0; y + dy < side; y += 1 + dy) {
+    for (int x = 0; x + dx < side; x += 1 + dx) {
+      a.push_back(image[std::size_t(y * side + x)]);
+      b.push_back(image[std::size_t((y + dy) * side + x + dx)]);
+    }
+  }
+  return {a, b};
+}
+
+TEST(Samplers, PixelsPairsAndBouncesAreIndependentWhereTheyShouldBe) {
+  Tests tests;
+  for (const std::string& text : independent_samplers()) {
+    const SamplerState state = state_of(text, 11, {side, side, 16});
+    for (const std::uint32_t sample : {0u, 6u}) {
+      const Values pixel = draw_image(state, pixel_pair, sample);
+      const Values light = draw_image(state, sample_pair(0, Purpose::Light), sample);
+      const Values bsdf = draw_image(state, sample_pair(0, Purpose::Bsdf), sample);
+      const Values next = draw_image(state, sample_pair(1, Purpose::Light), sample);
+      for (const Values* pair : {&pixel, &light, &bsdf, &next}) {
+        tests.add(text + ": u and v", joint_evenness(pair->u, pair->v, 16));
+      }
+      tests.add(text + ": pixel and light", joint_evenness(pixel.u, light.u, 16));
+      tests.add(text + ": light and bsdf", joint_evenness(light.u, bsdf.u, 16));
+      tests.add(text + ": light and bsdf, crossed", joint_evenness(light.u, bsdf.v, 16));
+      tests.add(text + ": bounces", joint_evenness(light.v, next.v, 16));
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}, {1, 1}}) {
+        const auto [a, b] = neighbours(light.u, dx, dy);
+        tests.add(text + ": neighbours", joint_evenness(a, b, 16));
+      }
+    }
+    if (text != "random" && text.find("fresh") == std::string::npos) continue;
+    const Values here = draw_image(state, 1, 3), there = draw_image(state, 1, 4);
+    tests.add(text + ": samples", joint_evenness(here.u, there.u, 16));
+  }
+}
+
+// The opposites of the test above, so that it is known to notice. By design neighbours depend on
+// each other where offsets are stratified over them, and where pixels share.
+TEST(Samplers, NeighboursDependOnEachOtherWhereTheyShould) {
+  for (const char* text : {"zsobol", "bluenoise", "strata", "rcs:weight=0.3", "owen:share=tile",
+                           "owen:share=image,offset=morton"}) {
+    const SamplerState state = state_of(text, 11, {side, side, 1});
+    const auto [a, b] = neighbours(draw_image(state, 1, 0).u, 1, 0);
+    EXPECT_LT(joint_evenness(a, b, 16), 1e-9) << text;
+  }
+}
+
+// Correlation of two equally long series, as a standard normal under independence.
+double correlation_z(const std::vector<float>& a, const std::vector<float>& b) {
+  Moments ma, mb;
+  for (const float x : a) ma.add(double(x));
+  for (const float x : b) mb.add(double(x));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += (double(a[i]) - ma.mean) * (double(b[i]) - mb.mean);
+  }
+  return sum / std::sqrt(ma.squares * mb.squares) * std::sqrt(double(a.size()));
+}
+
+// Over the samples of a pixel. By design two pixels have the same points, each scrambled or shifted
+// in its own way, where the order is the sequence's; and pairs belong together in Halton's and
+// Sobol's sequence.
+TEST(Samplers, SeriesOfAPixelAreUncorrelated) {
+  constexpr std::uint32_t count = 4096;
+  const std::set<std::string> one_order{"sobol", "pmj02", "halton", "linked"};
+  const std::set<std::string> one_sequence{"sobol", "halton"};
+  Tests tests;
+  for (const std::string& text : sequence_names()) {
+    const auto series = [&](std::uint32_t seed, std::uint32_t pixel, int pair) {
+      return draw(state_of(text, seed, {512, 512, count}), pixel, pair, 0, count);
+    };
+    const auto add = [&](const char* what, const Values& a, const Values& b) {
+      tests.add(text + what, normal_tail(correlation_z(a.u, b.u)));
+      tests.add(text + what, normal_tail(correlation_z(a.u, b.v)));
+    };
+    const Values base = series(7, 100, 2);
+    tests.add(text + ": u and v", normal_tail(correlation_z(base.u, base.v)));
+    if (!one_order.contains(text)) {
+      for (const std::uint32_t seed : {6u, 8u, 1u << 31})
+        add(": seeds", base, series(seed, 100, 2));
+      for (const std::uint32_t p : {101u, 102u, 228u, 612u}) add(": pixels", base, series(7, p, 2));
+    }
+    if (!one_sequence.contains(text)) {
+      for (const int pair : {0, 1, 3, 4, 6, 18, 100}) add(": pairs", base, series(7, 100, pair));
+    }
+  }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace lockstep {
 namespace {
@@ -71,16 +72,34 @@ TEST(Statistics, RatioIsTheGeometricMeanOverPairs) {
   EXPECT_FALSE(paired_ratio({}, {}));
 }
 
-TEST(Statistics, IntervalHoldsTheRatioAndIsReproducible) {
-  const std::vector<double> errors = {1.0, 1.3, 0.8, 1.1, 0.9}, base = {2.0, 2.0, 2.0, 2.0, 2.0};
-  const std::optional<Ratio> a = paired_ratio(errors, base), b = paired_ratio(errors, base);
-  ASSERT_TRUE(a && a->low && a->high);
-  EXPECT_LT(*a->low, a->value);
-  EXPECT_GT(*a->high, a->value);
-  EXPECT_GE(*a->low, 0.4);  // no resample leaves the range of the ratios
-  EXPECT_LE(*a->high, 0.65);
-  EXPECT_EQ(*a->low, *b->low);
-  EXPECT_EQ(*a->high, *b->high);
+TEST(Statistics, IntervalIsStudents) {
+  // Logarithms -1, 0, 1, 0: mean 0, deviation sqrt(2/3); t = 3.182446 for three degrees.
+  const std::vector<double> errors = {std::exp(-1.0), 1.0, std::exp(1.0), 1.0}, base(4, 1.0);
+  const std::optional<Ratio> ratio = paired_ratio(errors, base);
+  ASSERT_TRUE(ratio && ratio->low && ratio->high);
+  const double reach = 3.182446 * std::sqrt(2.0 / 3.0 / 4.0);
+  EXPECT_NEAR(std::log(*ratio->low), -reach, 1e-5);
+  EXPECT_NEAR(std::log(*ratio->high), reach, 1e-5);
+}
+
+// 2000 experiments in which nothing differs: the interval must exclude 1 in a twentieth of them.
+TEST(Statistics, IntervalExcludesTheTruthInATwentieth) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  for (const int seeds : {4, 8, 16}) {
+    int excluded = 0;
+    for (int experiment = 0; experiment < 2000; ++experiment) {
+      std::vector<double> errors, base;
+      for (int i = 0; i < seeds; ++i) {
+        errors.push_back(std::exp(noise(random)));
+        base.push_back(std::exp(noise(random)));
+      }
+      const std::optional<Ratio> ratio = paired_ratio(errors, base);
+      ASSERT_TRUE(ratio && ratio->low && ratio->high);
+      excluded += *ratio->low > 1.0 || *ratio->high < 1.0;
+    }
+    EXPECT_NEAR(excluded, 100, 40) << seeds << " seeds: four standard deviations";
+  }
 }
 
 TEST(Statistics, PairsWithOneRatioHaveNoSpread) {

@@ -178,32 +178,45 @@ TEST(Ssim, FallsWithNoise) {
 TEST(Spectrum, OfWhiteNoiseIsItsVariance) {
   const Image reference = constant(240, 200, 1.0f);
   const Image test = grey_noise(240, 200, 3.0f, 0.5f, 7);
-  const std::vector<double> spectrum = radial_spectrum(reference, test, 20);
-  ASSERT_EQ(spectrum.size(), 20u);
-  for (std::size_t i = 0; i < spectrum.size(); ++i) {
+  const ErrorSpectrum spectrum = error_spectrum(reference, test, 20);
+  ASSERT_EQ(spectrum.rings.size(), 20u);
+  EXPECT_NEAR(spectrum.white, 0.25, 0.01);
+  for (std::size_t i = 0; i < spectrum.rings.size(); ++i) {
     // A ring has about 240 * 200 pi / 4 (2 i + 1) / 400 frequencies, half of them independent; the
     // power at each has a standard deviation of its mean.
     const double independent = 240.0 * 200.0 * std::numbers::pi / 4.0 * (2.0 * double(i) + 1) / 800;
-    EXPECT_NEAR(spectrum[i], 0.25, 0.25 * 4.5 / std::sqrt(independent)) << i;
+    EXPECT_NEAR(spectrum.rings[i].power, 0.25, 0.25 * 4.5 / std::sqrt(independent)) << i;
   }
 }
 
 TEST(Spectrum, OfAWaveIsOneRing) {
-  for (const auto& [width, height] : {std::pair{80, 80}, {81, 57}, {64, 300}}) {
+  for (const auto& [width, height] : {std::pair{80, 80}, {81, 57}, {64, 300}, {101, 67}}) {
     const double fx = 11.0 / width, fy = 9.0 / height;
-    const std::vector<double> spectrum =
-        radial_spectrum(constant(width, height, 2.0f), wave(width, height, fx, fy, 0.3), 32);
-    const std::size_t ring = std::size_t(std::hypot(fx, fy) * 64.0);
-    double total = 0.0;
-    for (double power : spectrum) total += power;
-    EXPECT_GT(spectrum[ring], 0.999 * total) << width;
+    const ErrorSpectrum spectrum =
+        error_spectrum(constant(width, height, 2.0f), wave(width, height, fx, fy, 0.3), 32);
+    double total = 0.0, at_wave = 0.0;
+    for (const SpectrumRing& ring : spectrum.rings) {
+      total += ring.power;
+      if (std::abs(ring.frequency - std::hypot(fx, fy)) < 1.0 / 128.0) at_wave += ring.power;
+    }
+    EXPECT_GT(at_wave, 0.999 * total) << width;
     EXPECT_GT(total, 0.01);
   }
 }
 
+TEST(Spectrum, OfBlurredNoiseIsRed) {
+  const Image reference = constant(128, 96, 0.0f);
+  const std::vector<float> weights = gaussian_weights(1.5f, 6);
+  const Image test = separable_filter(grey_noise(128, 96, 0.0f, 1.0f, 10), weights, weights);
+  const ErrorSpectrum spectrum = error_spectrum(reference, test);
+  ASSERT_EQ(spectrum.rings.size(), 32u);
+  EXPECT_GT(spectrum.rings[2].power, 5.0 * spectrum.white);
+  EXPECT_LT(spectrum.rings[24].power, 0.05 * spectrum.white);
+}
+
 TEST(Spectrum, ObeysParseval) {
-  // One ring holds frequencies up to 1/2 but zero: its mean power times their number is the sum
-  // of squares of a wave among them.
+  // The mean power over all frequencies but zero, times their number, is the sum of squares of a
+  // wave; so is that of one ring, which has those up to 1/2, where the wave is among them.
   const int width = 48, height = 36;
   double frequencies = 0.0;
   for (int y = 0; y < height; ++y) {
@@ -214,11 +227,13 @@ TEST(Spectrum, ObeysParseval) {
     }
   }
   const Image reference = constant(width, height, 0.0f);
-  for (double columns : {0.0, 5.0, 24.0}) {  // 24: the highest frequency of a row, on its own
-    const Image test =
-        wave(width, height, columns / width, columns == 24.0 ? 0.0 : 7.0 / height, 1.0);
+  for (const auto& [columns, rows] : {std::pair{0, 7}, {5, 7}, {24, 0}, {20, 16}}) {
+    const Image test = wave(width, height, double(columns) / width, double(rows) / height, 1.0);
     const double squares = mse(reference, test) * width * height;
-    EXPECT_NEAR(radial_spectrum(reference, test, 1)[0] * frequencies, squares, 1e-3 * squares)
+    const ErrorSpectrum spectrum = error_spectrum(reference, test, 1);
+    const bool in_ring = columns != 20;  // a diagonal's frequency is 0.61
+    EXPECT_NEAR(spectrum.white * (width * height - 1), squares, 1e-4 * squares) << columns;
+    EXPECT_NEAR(spectrum.rings[0].power * frequencies, in_ring ? squares : 0.0, 1e-4 * squares)
         << columns;
   }
 }
@@ -226,24 +241,56 @@ TEST(Spectrum, ObeysParseval) {
 TEST(Spectrum, IsOfLuminance) {
   const Image reference = constant(32, 32, 0.0f);
   const Image noise = grey_noise(32, 32, 0.0f, 1.0f, 8);
-  const double white = radial_spectrum(reference, noise, 1)[0];
+  const double white = error_spectrum(reference, noise, 1).rings[0].power;
   const double weights[] = {0.2126, 0.7152, 0.0722};
   for (std::size_t c = 0; c < 3; ++c) {
     Image test = reference;
     for (std::size_t i = c; i < test.pixels.size(); i += 3) test.pixels[i] = noise.pixels[i];
-    EXPECT_NEAR(radial_spectrum(reference, test, 1)[0], weights[c] * weights[c] * white, 1e-6);
+    EXPECT_NEAR(error_spectrum(reference, test, 1).rings[0].power, weights[c] * weights[c] * white,
+                1e-5);
   }
 }
 
 TEST(Spectrum, TakesImagesOfAnySize) {
   for (const auto& [width, height] : kOddSizes) {
-    const std::vector<double> spectrum = radial_spectrum(
-        constant(width, height, 0.0f), grey_noise(width, height, 0.0f, 1.0f, 9), 16);
-    ASSERT_EQ(spectrum.size(), 16u);
-    for (double power : spectrum) EXPECT_TRUE(std::isfinite(power) && power >= 0.0);
+    const ErrorSpectrum spectrum =
+        error_spectrum(constant(width, height, 0.0f), grey_noise(width, height, 0.0f, 1.0f, 9), 16);
+    EXPECT_TRUE(std::isfinite(spectrum.white));
+    EXPECT_EQ(spectrum.rings.empty(), width * height == 1);
+    for (const SpectrumRing& ring : spectrum.rings) {
+      EXPECT_TRUE(std::isfinite(ring.power) && ring.power >= 0.0);
+    }
   }
-  const std::vector<double> offset = radial_spectrum(constant(9, 9, 0.0f), constant(9, 9, 3.0f), 4);
-  for (double power : offset) EXPECT_NEAR(power, 0.0, 1e-12);
+  const ErrorSpectrum offset = error_spectrum(constant(9, 9, 0.0f), constant(9, 9, 3.0f), 4);
+  for (const SpectrumRing& ring : offset.rings) EXPECT_NEAR(ring.power, 0.0, 1e-12);
+}
+
+TEST(Spectrum, RingsWithoutAFrequencyAreLeftOut) {
+  // 8 x 8 pixels have frequencies from 1/8 on: none in the first three of 16 rings to 1/2.
+  const ErrorSpectrum spectrum =
+      error_spectrum(constant(8, 8, 0.0f), grey_noise(8, 8, 0.0f, 1.0f, 11), 16);
+  ASSERT_FALSE(spectrum.rings.empty());
+  EXPECT_NEAR(spectrum.rings[0].frequency, 4.5 / 32.0, 1e-12);
+  EXPECT_LT(spectrum.rings.size(), 16u);
+}
+
+TEST(Spectrum, AveragesPowerNotErrors) {
+  // Opposite errors: their mean is none, the mean of their powers is that of either.
+  const Image reference = constant(32, 32, 0.0f);
+  const Image noise = grey_noise(32, 32, 0.0f, 1.0f, 12);
+  Image opposite = noise;
+  for (float& v : opposite.pixels) v = -v;
+  const ErrorSpectrum one = error_spectrum(reference, noise);
+  ErrorSpectrum mean;
+  average_in(mean, one, 1);
+  average_in(mean, error_spectrum(reference, opposite), 2);
+  average_in(mean, error_spectrum(reference, reference), 3);
+  ASSERT_EQ(mean.rings.size(), one.rings.size());
+  EXPECT_NEAR(mean.white, one.white * 2.0 / 3.0, 1e-6);
+  for (std::size_t i = 0; i < one.rings.size(); ++i) {
+    EXPECT_EQ(mean.rings[i].frequency, one.rings[i].frequency);
+    EXPECT_NEAR(mean.rings[i].power, one.rings[i].power * 2.0 / 3.0, 1e-5) << i;
+  }
 }
 
 }  // namespace

@@ -176,6 +176,118 @@ TEST(WeightMap, TakesDifferencesAfterTheFilter) {
   EXPECT_NEAR(*w.at(0, 0), 0.5 * (b - a) / b, 1e-6);
 }
 
+// Automatic weights -----------------------------------------------------------------------------
+
+Values auto_weights(const Image& pilot, const Image& variance, double ratio) {
+  const Image w = make_auto_weights(pilot, variance, ratio);
+  EXPECT_EQ(w.channels, 1);
+  EXPECT_EQ(w.width, pilot.width);
+  EXPECT_EQ(w.height, pilot.height);
+  return w.pixels;
+}
+
+TEST(AutoWeights, WithoutNoiseAllIsShared) {
+  const Image pilot = grey(4, {0, 1, 5, 1e30f, 2, 0, 0, 1e-20f});
+  for (const double ratio : {0.0, 1.0, 1e9}) {
+    EXPECT_EQ(auto_weights(pilot, grey(4, Values(8, 0.0f)), ratio), Values(8, 0.0f));
+  }
+  EXPECT_EQ(auto_weights(pilot, grey(4, Values(8, 3.0f)), 0.0), Values(8, 0.0f));
+}
+
+TEST(AutoWeights, WhereNoiseIsSeenNothingIsShared) {
+  for (const float level : {0.0f, 0.01f, 1.0f, 100.0f}) {
+    const float deviation = 0.02f * (level + 0.01f);
+    const Image variance = grey(3, Values(9, deviation * deviation));
+    EXPECT_EQ(auto_weights(grey(3, Values(9, level)), variance, 1.0), Values(9, 1.0f)) << level;
+  }
+}
+
+// Contrast over one per cent, in flat images: sqrt(ratio * variance) / (level + 0.01) / 0.01.
+TEST(AutoWeights, AreTheContrastOfNoiseBelowTheThreshold) {
+  const Image pilot = grey(3, Values(9, 0.99f));
+  for (const double contrast : {0.001, 0.0025, 0.009}) {
+    for (const double ratio : {0.25, 1.0, 3.0}) {
+      const Image variance = grey(3, Values(9, float(contrast * contrast / ratio)));
+      for (const float w : auto_weights(pilot, variance, ratio)) {
+        EXPECT_NEAR(w, 100.0 * contrast, 1e-5);
+      }
+    }
+  }
+}
+
+TEST(AutoWeights, TheNoisiestChannelCounts) {
+  Image variance(3, 3);
+  for (int i = 0; i < 9; ++i) variance.pixels[size_t(3 * i + 1)] = 1e-5f;
+  const Values one = auto_weights(grey(3, Values(9, 0.99f)), variance, 1.0);
+  const Values all = auto_weights(grey(3, Values(9, 0.99f)), grey(3, Values(9, 1e-5f)), 1.0);
+  EXPECT_EQ(one, all);
+  EXPECT_NEAR(all[4], 100.0 * std::sqrt(1e-5), 1e-4);
+}
+
+// With noise, without light: contrasts are taken to the darkest grey that is seen.
+TEST(AutoWeights, GrowWithNoiseAndFallWithLight) {
+  Values previous(16, -1.0f);
+  for (const double ratio : {0.0, 1e-8, 1e-6, 1e-4, 1e-2, 1.0, 100.0, 1e12}) {
+    Image variance = grey(4, Values(16, 1e-4f));
+    variance.at(2, 1)[0] = 0.5f;
+    const Values w = auto_weights(grey(4, Values(16, 0.5f)), variance, ratio);
+    for (std::size_t i = 0; i < w.size(); ++i) EXPECT_GE(w[i], previous[i]) << ratio;
+    previous = w;
+  }
+  EXPECT_EQ(previous, Values(16, 1.0f));
+  float before = 2.0f;
+  for (const float level : {0.0f, 0.1f, 1.0f, 10.0f, 1e6f}) {
+    const Image variance = grey(3, Values(9, 1e-8f));
+    const float w = auto_weights(grey(3, Values(9, level)), variance, 1.0)[4];
+    EXPECT_LT(w, before) << level;
+    before = w;
+  }
+}
+
+// What a pilot with a firefly, an overflow or no light at all may hold.
+TEST(AutoWeights, LieInTheUnitIntervalWhateverThePilot) {
+  constexpr float huge = std::numeric_limits<float>::max();
+  const float levels[] = {0.0f, 1e-30f, 1.0f, 1e30f, huge};
+  const float variances[] = {0.0f, 1e-40f, 1e-20f, 1.0f, huge, infinity};
+  for (const float level : levels) {
+    for (const float variance : variances) {
+      for (const double ratio : {0.0, 1e-300, 1.0, 1e300}) {
+        Image v = grey(5, Values(25, 1e-3f));
+        Image p = grey(5, Values(25, 0.5f));
+        std::fill_n(v.at(2, 2), 3, variance);
+        std::fill_n(p.at(2, 2), 3, level);
+        for (const float w : auto_weights(p, v, ratio)) {
+          EXPECT_TRUE(w >= 0.0f && w <= 1.0f)
+              << w << ' ' << level << ' ' << variance << ' ' << ratio;
+        }
+      }
+    }
+  }
+}
+
+TEST(WeightMap, LiesInTheUnitIntervalWhateverThePilot) {
+  for (const float level :
+       {0.0f, 1e-40f, 1.0f, 1e30f, std::numeric_limits<float>::max(), infinity}) {
+    for (const WeightFilter filter :
+         {WeightFilter::None, WeightFilter::Gaussian, WeightFilter::Median}) {
+      Image p = grey(5, Values(25, 0.5f));
+      std::fill_n(p.at(2, 2), 3, level);
+      const Image map = make_weights(p, {4.0f, 0.02f, filter});
+      for (const float w : map.pixels) EXPECT_TRUE(w >= 0.0f && w <= 1.0f) << w << ' ' << level;
+    }
+  }
+}
+
+TEST(ShareOfZeros, CountsThem) {
+  Image w(2, 2, 1);
+  w.pixels = {0.0f, 1.0f, 0.0f, 1e-30f};
+  EXPECT_DOUBLE_EQ(share_of_zeros(w), 0.5);
+  w.pixels = {1.0f, 1.0f, 1.0f, 1.0f};
+  EXPECT_DOUBLE_EQ(share_of_zeros(w), 0.0);
+  EXPECT_DOUBLE_EQ(share_of_zeros(make_weights(grey(2, Values(4, 1.0f)), {})), 1.0);
+  EXPECT_DOUBLE_EQ(share_of_zeros(Image()), 0.0);
+}
+
 TEST(MeanWeight, IsTheMean) {
   Image w(2, 2, 1);
   w.pixels = {0.0f, 1.0f, 0.5f, 0.25f};

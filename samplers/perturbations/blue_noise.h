@@ -2,19 +2,20 @@
 #pragma once
 
 #include "samplers/blue_noise_mask.h"
+#include "samplers/fractions.h"
 #include "samplers/pixel_position.h"
 #include "samplers/sequence_info.h"
-#include "samplers/fractions.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
 struct BlueNoiseOffset {
-  static constexpr PerturbationInfo info{
-      "bluenoise", "one for each pixel, from a blue-noise mask",
-      "Georgiev and Fajardo 2016, Blue-Noise Dithered Sampling", blue_noise_mask};
+  static constexpr PerturbationInfo info{"bluenoise", "one for each pixel, from a blue-noise mask",
+                                         "Georgiev and Fajardo 2016, Blue-Noise Dithered Sampling",
+                                         blue_noise_mask};
 
-  // The mask around the pixel, moved by the key's bits. The rank's place below its digits is random.
+  // The mask around the pixel, moved by the key's bits. The rank's place below its digits is
+  // random.
   template <class U>
   LOCKSTEP_INLINE static U value(const SamplerState& s, const PixelPosition<U>& p,
                                  std::uint32_t move, U jitter) {

@@ -40,7 +40,7 @@ struct HaltonSequence {
   template <class U>
   LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, Fractions<U> prepared,
                                             int pair) {
-    const Hash3<U> keys = pixel_keys(pixel, pair, s.seed);
+    const Hash4<U> keys = pixel_keys(pixel, pair, s.seed);
     return {prepared.x + keys.x, prepared.y + keys.y};
   }
 };

@@ -14,7 +14,7 @@ struct OwenSequence {
 
   template <class U>
   LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, U sample, int pair) {
-    const Hash3<U> keys = pixel_keys(pixel, pair, s.seed);
+    const Hash4<U> keys = pixel_keys(pixel, pair, s.seed);
     return scrambled_sobol(shuffled_index(sample, keys.z), keys.x, keys.y);
   }
 };

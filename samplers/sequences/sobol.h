@@ -1,5 +1,5 @@
-// Sobol's sequence in all its dimensions, each Owen-scrambled by a key of the pixel's. Unlike padded
-// pairs it is stratified in other projections too, as far as its direction numbers go.
+// Sobol's sequence in all its dimensions, each Owen-scrambled by a key of the pixel's. Unlike
+// padded pairs it is stratified in other projections too, as far as its direction numbers go.
 #pragma once
 
 #include "samplers/joe_kuo.h"
@@ -34,9 +34,10 @@ struct SobolSequence {
   template <class U>
   LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, Fractions<U> prepared,
                                             int pair) {
-    const Hash3<U> keys = pixel_keys(pixel, pair, s.seed);
-    return {reverse_bits(scramble_mirrored(prepared.x, keys.x)),
-            reverse_bits(scramble_mirrored(prepared.y, keys.y))};
+    const Hash4<U> keys = pixel_keys(pixel, pair, s.seed);
+    const Fractions<U> scrambled{reverse_bits(scramble_mirrored(prepared.x, keys.x)),
+                                 reverse_bits(scramble_mirrored(prepared.y, keys.y))};
+    return digit_shifted(scrambled, keys.z, keys.w);
   }
 };
 

@@ -28,19 +28,25 @@ struct StratifiedSequence {
     return {sample % s.samples, sample / s.samples};
   }
 
+  // A place in the cell, kept off its end, where rounding would take it into the next.
+  template <class V, class U>
+  LOCKSTEP_INLINE static V inside(V cell, U jitter) {
+    return min(cell + unit_float(jitter), (cell + V(1.0f)) * V(1.0f - 0x1p-22f));
+  }
+
   template <class U>
   LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, Fractions<U> prepared,
                                             int pair) {
     using V = FloatOf<U>;
     const Grid g = grid(s.samples);
-    const Hash3<U> keys = pixel_keys(pixel ^ (prepared.y * U(0x9e3779b9u)), pair, s.seed);
+    const Hash4<U> keys = pixel_keys(pixel ^ (prepared.y * U(0x9e3779b9u)), pair, s.seed);
     const U cell = permuted_index(prepared.x, g.columns * g.rows, keys.x);
     // Exact: cells are far fewer than 2^24.
     const V row = floor((to_float(as_int(cell)) + V(0.5f)) * V(1.0f / float(g.columns)));
     const V column = to_float(as_int(cell)) - row * V(float(g.columns));
     const Hash3<U> jitter = pcg3d(keys.y, keys.z, prepared.x);
-    return {fraction_of((column + unit_float(jitter.x)) * V(1.0f / float(g.columns))),
-            fraction_of((row + unit_float(jitter.y)) * V(1.0f / float(g.rows)))};
+    return {fraction_of(inside(column, jitter.x) * V(1.0f / float(g.columns))),
+            fraction_of(inside(row, jitter.y) * V(1.0f / float(g.rows)))};
   }
 };
 

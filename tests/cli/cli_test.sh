@@ -114,6 +114,8 @@ expect 0 'report.html' compare cornell --samplers 'random,rcs:c=2,t=0.01,cpt' --
 [ "$(wc -l <out/errors.csv)" = 13 ] || fail "errors.csv has $(wc -l <out/errors.csv) lines, not 13"
 has out/errors.csv '^scene,sampler,seed,spp,cpu_seconds,wall_seconds,rmse,relmse,relmse_trimmed'
 has out/errors.csv '^cornell,"rcs:c=2,t=0.01",1,8,'
+has out/spectra.csv '^cornell,[0-9]+,random,8,'
+has out/summary.json '"verdicts"'
 has out/summary.json '"equal_time"'
 has out/report.html 'cornell-reference.png'
 
