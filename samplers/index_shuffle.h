@@ -29,11 +29,14 @@ template <class U>
 LOCKSTEP_INLINE U permuted_index(U index, std::uint32_t count, U key) {
   const int bits = std::bit_width(count - 1);
   const U mask((1u << bits) - 1u);
-  U i = mix_index(index & mask, mask, bits, key);
-  auto outside = as_int(i) >= decltype(as_int(i))(std::int32_t(count));
+  const auto end = as_int(U(count));
+  // Lanes behind the last path may hold anything, and a cycle outside the range never enters it.
+  U i = select(as_int(index & mask) < end, index & mask, U(0u));
+  i = mix_index(i, mask, bits, key);
+  auto outside = as_int(i) >= end;
   while (any(outside)) {
     i = select(outside, mix_index(i, mask, bits, key), i);
-    outside = as_int(i) >= decltype(as_int(i))(std::int32_t(count));
+    outside = as_int(i) >= end;
   }
   return i;
 }

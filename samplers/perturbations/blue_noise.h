@@ -30,7 +30,7 @@ struct BlueNoiseOffset {
     const PixelPosition<U> p = position_of(pixel, s.width);
     const Hash3<std::uint32_t> moves = pcg3d(s.seed, std::uint32_t(pair), 0xb10eu);
     const auto jitter = random_fractions(pixel, U(0u), pair, s.seed, Stream::Jitter);
-    return {value(s, p, moves.x, jitter.x), value(s, p, moves.y, jitter.y)};
+    return {value(s, p, folded(moves.x), jitter.x), value(s, p, folded(moves.y), jitter.y)};
   }
 };
 
