@@ -12,7 +12,7 @@ struct PixelPosition {
   U x, y;
 };
 
-// Exact for pixel numbers below 2^31: the float quotient is off by one at most.
+// Exact for up to 2^22 rows: the float quotient is off by one at most.
 template <class U>
 LOCKSTEP_INLINE PixelPosition<U> position_of(U pixel, int width) {
   using V = FloatOf<U>;
