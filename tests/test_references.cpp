@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Reference{"killeroo-quad/killeroo-quad.pbrt", "killeroo-quad/reference-depth1.exr", 1, 64},
         Reference{"killeroo-quad/killeroo-quad.pbrt", "killeroo-quad/reference-depth5.exr", 5, 64},
         Reference{"cornell-box/scene-v4.pbrt", "cornell-box/reference-pbrt.exr", 65, 48, 0.15},
-        Reference{"veach-mis/scene-v4.pbrt", "veach-mis/reference-pbrt.exr", 3, 96, 0.1}),
+        Reference{"veach-mis/scene-v4.pbrt", "veach-mis/reference-pbrt.exr", 3, 256, 0.1}),
     [](const auto& p) {
       std::string name = p.param.scene;
       name = name.substr(0, name.find('/')) + "Depth" + std::to_string(p.param.depth);
