@@ -1,5 +1,6 @@
 // The module of image formats: everything that OpenImageIO reads, and what it encodes in memory.
 #include "core/image_formats.h"
+#include "core/srgb.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -24,14 +25,6 @@ struct OwnedResult : FormatResult {
   std::vector<FormatAttribute> attribute_list;
   std::vector<unsigned char> bytes;
 };
-
-// IEC 61966-2-1, both ways; values outside [0, 1] are not clamped here.
-float linear_from_srgb(float v) {
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
-float srgb_from_linear(float v) {
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
-}
 
 // An error of what OpenImageIO says, which may be nothing.
 std::runtime_error failure(const std::string& what, const std::string& reason) {

@@ -1,4 +1,5 @@
 #include "experiments/display_image.h"
+#include "core/srgb.h"
 
 #include <tbb/parallel_for.h>
 
@@ -30,14 +31,6 @@ constexpr std::array<std::array<float, 3>, kMagmaSteps + 1> kMagma = {{{0.001f, 
                                                                        {0.987f, 0.991f, 0.750f}}};
 
 }  // namespace
-
-float srgb_from_linear(float value) {
-  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
-}
-
-float linear_from_srgb(float value) {
-  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
-}
 
 std::uint8_t display_code(float linear) {
   return std::uint8_t(255.0f * srgb_from_linear(std::clamp(linear, 0.0f, 1.0f)) + 0.5f);

@@ -7,10 +7,6 @@
 
 namespace lockstep {
 
-// IEC 61966-2-1 both ways, for values in [0, 1].
-float srgb_from_linear(float value);
-float linear_from_srgb(float value);
-
 // The 8-bit sRGB code of a linear value: what an image file of it would hold.
 std::uint8_t display_code(float linear);
 

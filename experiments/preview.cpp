@@ -1,4 +1,5 @@
 #include "experiments/preview.h"
+#include "core/srgb.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +9,6 @@ namespace {
 
 constexpr double kWhiteQuantile = 0.95;
 constexpr float kWhite = 0.9f;
-
-float linear_from_srgb(float v) {
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
 
 }  // namespace
 

@@ -69,6 +69,7 @@ nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Sc
           {"lanes_active", stats.lanes_active},
           {"stage_cpu_seconds", stages_json(stats)},
           {"mean_weight", stats.mean_weight},
+          {"zero_weights", stats.zero_weights},
           {"biased", !sampler.unbiased()},
           {"nonfinite", stats.nonfinite},
           {"features", feature_names(scene.features())},

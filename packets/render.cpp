@@ -94,11 +94,13 @@ class Renderer {
     SamplerState state = make_state(sampler_, stream_seed(settings_.seed, 0),
                                     plan(std::uint32_t(settings_.spp - pilot_spp_)));
     double weight = sampler_.shared() ? double(state.weight) : 1.0;
+    double zero_weights = weight == 0.0 ? 1.0 : 0.0;
     if (pilot_spp_ > 0) {
       render_pilot();
       const double before = thread_cpu_seconds();
       result.weights = weights();
       weight = mean_weight(*result.weights);
+      zero_weights = share_of_zeros(*result.weights);
       weights_seconds_ = thread_cpu_seconds() - before;
       state_.totals.cpu_seconds += weights_seconds_;
       state.weights = result.weights->pixels.data();
@@ -110,7 +112,7 @@ class Renderer {
       render_to(state_.image, std::uint32_t(settings_.spp - pilot_spp_));
     }
     result.image = combine(result.weights);
-    result.stats = stats(weight);
+    result.stats = stats(weight, zero_weights);
     return result;
   }
 
@@ -222,7 +224,7 @@ class Renderer {
     return share * (state_.totals.cpu_seconds - weights_seconds_);
   }
 
-  RenderStats stats(double weight) const {
+  RenderStats stats(double weight, double zero_weights) const {
     const TileCounts& counts = state_.totals.counts;
     RenderStats s;
     s.wall_seconds = state_.wall_seconds + wall_seconds() - counted_;
@@ -242,6 +244,7 @@ class Renderer {
     s.spp = int(samples_done());
     s.pilot_spp = pilot_spp_;
     s.mean_weight = weight;
+    s.zero_weights = zero_weights;
     s.lanes = layout_of_most_paths(counts);
     s.threads = pass_.threads;
     return s;

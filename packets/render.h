@@ -69,6 +69,7 @@ struct RenderStats {
   int spp = 0;                         // samples per pixel that were taken
   int pilot_spp = 0;                   // of which for the pilot
   double mean_weight = 0.0;            // of the perturbation; 1 for independent pixels
+  double zero_weights = 0.0;           // share of pixels with weight 0
   std::size_t film_bytes = 0;          // sums and image, pilot included
   int width = 0;
   LaneLayout lanes;  // of most paths

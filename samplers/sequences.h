@@ -1,5 +1,5 @@
 // All sequences. To add one, write its file (random.h is the shortest) and name it here: it then is
-// a sampler of that name, an option of all others, and in every list, test and picture.
+// a sampler of that name, an option of all others, and in the tests that go over all sequences.
 #pragma once
 
 #include "samplers/sequences/halton.h"

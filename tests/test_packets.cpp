@@ -225,6 +225,10 @@ TEST(RenderStats, PilotAndWeightsAreReported) {
   const RenderResult random = render(scene, parse_sampler("random"), settings_of(1));
   EXPECT_FALSE(random.weights);
   EXPECT_EQ(random.stats.mean_weight, 1.0);
+  EXPECT_EQ(random.stats.zero_weights, 0.0);
+  const auto zeros = std::count(rcs.weights->pixels.begin(), rcs.weights->pixels.end(), 0.0f);
+  EXPECT_DOUBLE_EQ(rcs.stats.zero_weights, double(zeros) / 3500.0);
+  EXPECT_EQ(render(scene, parse_sampler("cpt"), settings_of(1)).stats.zero_weights, 1.0);
   EXPECT_EQ(render(scene, parse_sampler("cpt"), settings_of(1)).stats.mean_weight, 0.0);
   const SamplerSpec quarter = parse_sampler("rcs:weight=0.25");
   EXPECT_EQ(render(scene, quarter, settings_of(1)).stats.mean_weight, 0.25);

@@ -1,4 +1,5 @@
 // Low-pass RMSE, SSIM and the spectrum of errors on images with known answers.
+#include "core/srgb.h"
 #include "experiments/display_image.h"
 #include "experiments/error_spectrum.h"
 #include "experiments/separable_filter.h"

@@ -17,8 +17,7 @@ struct StratifiedSequence {
     std::uint32_t columns, rows;
   };
   LOCKSTEP_INLINE static Grid grid(std::uint32_t samples) {
-    std::uint32_t columns = 1;
-    while ((columns + 1) * (columns + 1) <= samples) ++columns;
+    const auto columns = std::uint32_t(__builtin_sqrt(double(samples)));
     return {columns, (samples + columns - 1) / columns};
   }
 

@@ -77,7 +77,7 @@ expect 1 'a.exr' metrics a.exr b.exr
 expect 0 '' render cornell -o a.exr $small --sampler rcs --seed 3 --stats a.json --weights w.exr
 for key in scene sampler width isa threads seed spp depth resolution render_seconds cpu_seconds \
   paths rays camera bounce shadow paths_per_cpu_second lanes_active nonfinite features left_out \
-  peak_memory_bytes version lanes pilot_spp mean_weight biased traversal packets \
+  peak_memory_bytes version lanes pilot_spp mean_weight zero_weights biased traversal packets \
   stage_cpu_seconds sampling film memory_bytes geometry embree; do
   has a.json "\"$key\": "
 done
