@@ -6,5 +6,9 @@ set(isa_flags_avx2 -mavx2 -mfma)
 set(isa_flags_avx512 -mavx512f -mavx512dq -mavx512vl -mavx512bw -mfma
     -mprefer-vector-width=512
     $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized$<SEMICOLON>-Wno-maybe-uninitialized>)
+# What a CPU needs to run them, as __builtin_cpu_supports() names it.
+set(isa_cpu_features_sse4 sse4.2)
+set(isa_cpu_features_avx2 avx2 fma)
+set(isa_cpu_features_avx512 avx512f avx512dq avx512vl avx512bw fma)
 # Without auto-vectorisation a width of 1 is honestly scalar.
 set(isa_common_flags -fno-tree-vectorize -fno-tree-slp-vectorize)

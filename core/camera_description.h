@@ -6,10 +6,16 @@
 
 namespace lockstep {
 
-// Perspective pinhole camera. Camera space has x to the right of the image, y up, z into the scene.
+// Camera space has x to the right of the image, y up, z into the scene.
 struct CameraDescription {
+  enum class Projection { Perspective, Orthographic };
   glm::mat4 camera_to_world{1.0f};
-  float fov_degrees = 90.0f;  // full angle along the shorter image axis
+  Projection projection = Projection::Perspective;
+  float fov_degrees = 90.0f;    // perspective: full angle along the shorter image axis
+  float extent = 2.0f;          // orthographic: the image's shorter side, in the scene's unit
+  glm::vec2 shift{0.0f};        // of the image's centre, right and up, in units of the shorter side
+  float lens_radius = 0.0f;     // 0: a pinhole
+  float focal_distance = 1e6f;  // along z, where a lens is sharp
 };
 
 // Reconstruction filter over the pixel, separable, centred on the pixel; radii in pixels.

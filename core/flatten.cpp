@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <stdexcept>
 
 namespace lockstep {
 namespace {
@@ -31,27 +32,33 @@ struct MaterialRow {
 
 MaterialRow row(const DiffuseMaterial& m) {
   MaterialRow r{MaterialKind::Diffuse, {}};
-  append(r.parameters, m.reflectance);
+  append(r.parameters, m.reflectance.value);
   return r;
 }
 MaterialRow row(const ConductorMaterial& m) {
   MaterialRow r{MaterialKind::Conductor, {}};
-  append(r.parameters, m.eta);
-  append(r.parameters, m.k);
+  append(r.parameters, m.eta.value);
+  append(r.parameters, m.k.value);
   r.parameters.insert(r.parameters.end(), {m.alpha.x, m.alpha.y});
   return r;
 }
 MaterialRow row(const CoatedMaterial& m) {
   MaterialRow r{MaterialKind::Coated, {}};
-  append(r.parameters, m.diffuse);
-  append(r.parameters, m.specular);
+  append(r.parameters, m.diffuse.value);
+  append(r.parameters, m.specular.value);
   r.parameters.insert(r.parameters.end(),
                       {m.alpha, m.eta, m.layered ? 1.0f : 0.0f, inner_reflectance(m.eta)});
   return r;
 }
 
+// substitute_unsupported() has replaced the others.
+template <class Model>
+MaterialRow row(const Model&) {
+  throw std::logic_error("a material model without a kernel");
+}
+
 void append_material(FlatScene& flat, const Material& material) {
-  MaterialRow r = std::visit([](const auto& m) { return row(m); }, material);
+  MaterialRow r = std::visit([](const auto& m) { return row(m); }, material.model);
   r.parameters.resize(material_stride, 0.0f);
   flat.material_kinds.push_back(std::int32_t(r.kind));
   flat.material_parameters.insert(flat.material_parameters.end(), r.parameters.begin(),

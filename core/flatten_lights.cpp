@@ -29,12 +29,12 @@ Light flat_light(LightKind kind, glm::vec3 corner, glm::vec3 e1, glm::vec3 e2,
                  const Emission& emission) {
   const glm::vec3 n = glm::cross(e1, e2);
   const float parallelogram = glm::length(n);
-  Light l{kind, corner, e1, e2, glm::vec3(0.0f), emission.radiance};
+  Light l{kind, corner, e1, e2, glm::vec3(0.0f), emission.radiance.value};
   l.area = kind == LightKind::Triangle ? 0.5f * parallelogram : parallelogram;
   if (parallelogram > 0.0f) l.normal = n / parallelogram;
   l.side = emission.two_sided ? 0.0f : 1.0f;
   l.power =
-      luminance(emission.radiance) * l.area * (emission.two_sided ? 2.0f : 1.0f) * glm::pi<float>();
+      luminance(emission.radiance.value) * l.area * (emission.two_sided ? 2.0f : 1.0f) * glm::pi<float>();
   return l;
 }
 
@@ -80,10 +80,10 @@ std::vector<Light> mesh_lights(const TriangleMesh& mesh, const Emission& emissio
 
 Light sphere_light(const Sphere& sphere, const Emission& emission) {
   Light l{LightKind::Sphere, sphere.center};
-  l.radiance = emission.radiance;
+  l.radiance = emission.radiance.value;
   l.area = sphere.radius;
   l.side = emission.two_sided ? 0.0f : sphere.emits_inwards ? -1.0f : 1.0f;
-  l.power = luminance(emission.radiance) * 4.0f * glm::pi<float>() * glm::pi<float>() *
+  l.power = luminance(emission.radiance.value) * 4.0f * glm::pi<float>() * glm::pi<float>() *
             sphere.radius * sphere.radius * (emission.two_sided ? 2.0f : 1.0f);
   return l;
 }
@@ -157,7 +157,7 @@ void flatten_lights(const SceneDescription& description, FlatScene& flat) {
   std::vector<Light> lights;
   for (std::size_t g = 0; g < description.shapes.size(); ++g) {
     const Shape& shape = description.shapes[g];
-    if (!shape.emission || shape.emission->radiance == glm::vec3(0.0f)) continue;
+    if (!shape.emission || shape.emission->radiance.value == glm::vec3(0.0f)) continue;
     flat.geometry_rows[g * geometry_stride + 2] = std::int32_t(flat.light_of_primitive.size());
     const int first = int(lights.size());
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
@@ -168,9 +168,9 @@ void flatten_lights(const SceneDescription& description, FlatScene& flat) {
       lights.push_back(sphere_light(std::get<Sphere>(shape.geometry), *shape.emission));
     }
   }
-  if (description.environment && *description.environment != glm::vec3(0.0f)) {
+  if (description.environment && description.environment->radiance != glm::vec3(0.0f)) {
     flat.environment_light = std::int32_t(lights.size());
-    lights.push_back(environment_light(*description.environment, scene_radius(flat)));
+    lights.push_back(environment_light(description.environment->radiance, scene_radius(flat)));
   }
   append_rows(lights, flat);
 }

@@ -1,6 +1,7 @@
 #include "core/read_scene.h"
 
 #include "core/error.h"
+#include "core/substitutes.h"
 
 #include <algorithm>
 #include <array>
@@ -75,7 +76,11 @@ SceneDescription read_scene(const std::string& name) {
   if (fs::is_directory(name, ignored)) {
     throw Error(name + ": is a directory; name the scene file in it");
   }
-  if (is_pbrt(name)) return read_pbrt(name);
+  if (is_pbrt(name)) {
+    SceneDescription scene = read_pbrt(name);
+    substitute_unsupported(scene);
+    return scene;
+  }
   throw Error(name + ": unknown scene format; pbrt files (version 3 or 4) are understood");
 }
 

@@ -91,6 +91,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   s.flat = flatten(description);
   s.fingerprint = lockstep::fingerprint(s.flat);
   description.shapes.clear();
+  description.objects.clear();
   s.description = std::move(description);
 
   s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));

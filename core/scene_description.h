@@ -7,6 +7,7 @@
 #pragma once
 
 #include "core/camera_description.h"
+#include "core/light_description.h"
 #include "core/material.h"
 #include "core/mesh.h"
 
@@ -20,7 +21,7 @@ namespace lockstep {
 
 // Radiance leaving a surface, W/(m^2 sr) per RGB channel; one-sided unless said otherwise.
 struct Emission {
-  glm::vec3 radiance{0.0f};
+  ColorInput radiance{glm::vec3(0.0f)};
   bool two_sided = false;
 };
 
@@ -30,11 +31,30 @@ struct Sphere {
   bool emits_inwards = false;
 };
 
+// One-sided like a triangle: its geometric normal is `normal`.
+struct Disk {
+  glm::vec3 center{0.0f};
+  glm::vec3 normal{0.0f, 0.0f, 1.0f};  // unit
+  float radius = 1.0f;
+};
+
+using Geometry = std::variant<TriangleMesh, Sphere, Disk>;
+
 // One piece of geometry with its material; `material` indexes SceneDescription::materials.
 struct Shape {
-  std::variant<TriangleMesh, Sphere> geometry;
+  Geometry geometry;
   int material = 0;
   std::optional<Emission> emission;
+};
+
+// Shapes in a space of their own, to be placed any number of times. They do not emit.
+struct ObjectDescription {
+  std::vector<Shape> shapes;
+};
+
+struct Instance {
+  int object = 0;  // index of SceneDescription::objects
+  glm::mat4 to_world{1.0f};
 };
 
 // What the scene's author asked for; the command line overrides each.
@@ -45,9 +65,13 @@ struct RenderDefaults {
 
 struct SceneDescription {
   std::string name;
+  std::vector<Texture> textures;
   std::vector<Material> materials;
   std::vector<Shape> shapes;
-  std::optional<glm::vec3> environment;  // constant radiance from every direction
+  std::vector<ObjectDescription> objects;
+  std::vector<Instance> instances;
+  std::vector<LightSource> lights;
+  std::optional<Environment> environment;
   CameraDescription camera;
   FilmDescription film;
   RenderDefaults defaults;

@@ -186,9 +186,9 @@ TEST(BuiltinSceneList, CeilingLampsShineDown) {
 TEST(BuiltinSceneList, FurnaceIsWhiteInWhite) {
   const SceneDescription scene = read_scene("furnace");
   ASSERT_TRUE(scene.environment);
-  EXPECT_EQ(*scene.environment, glm::vec3(1.0f));
+  EXPECT_EQ(scene.environment->radiance, glm::vec3(1.0f));
   for (const Material& material : scene.materials) {
-    EXPECT_EQ(std::get<DiffuseMaterial>(material).reflectance, glm::vec3(1.0f));
+    EXPECT_EQ(std::get<DiffuseMaterial>(material.model).reflectance, glm::vec3(1.0f));
   }
 }
 

@@ -361,7 +361,7 @@ TEST_F(Resume, OtherSettingsAreRefused) {
   EXPECT_NE(refusal(wider, "rcs:pilot=2", resuming(8)).find("other settings"), std::string::npos);
   SceneDescription brighter = resized(builtin::make_cornell(), 70, 50);  // the name stays
   for (Shape& shape : brighter.shapes) {
-    if (shape.emission) shape.emission->radiance *= 2.0f;
+    if (shape.emission) shape.emission->radiance.value *= 2.0f;
   }
   EXPECT_NE(refusal(build(brighter), "rcs:pilot=2", resuming(8)).find("another scene"),
             std::string::npos);

@@ -443,7 +443,7 @@ std::array<double, 3> quadrature(const Bsdf& bsdf, glm::dvec3 axis, glm::dvec3 w
 // The floor's material by itself, as the kernels see it.
 template <class F>
 auto with_bsdf(const Scene& scene, const Material& material, F f) {
-  if (std::holds_alternative<ConductorMaterial>(material)) {
+  if (std::holds_alternative<ConductorMaterial>(material.model)) {
     return f(load_conductor(scene.data().materials, std::int32_t(0)));
   }
   return f(load_coated(scene.data().materials, std::int32_t(0)));

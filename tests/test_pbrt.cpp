@@ -69,7 +69,7 @@ const Sphere& sphere_of(const SceneDescription& scene, size_t shape = 0) {
 
 template <class T>
 const T& material_of(const SceneDescription& scene, size_t shape = 0) {
-  return std::get<T>(scene.materials.at(scene.shapes.at(shape).material));
+  return std::get<T>(scene.materials.at(scene.shapes.at(shape).material).model);
 }
 
 bool warns(const SceneDescription& scene, const std::string& text) {
@@ -367,7 +367,7 @@ TEST_F(Pbrt, MaterialsOfV4) {
   EXPECT_FLOAT_EQ(coated.alpha, 0.5f);
   EXPECT_FLOAT_EQ(coated.eta, 1.5f);
   const auto& gold = material_of<ConductorMaterial>(scene, 2);
-  EXPECT_LT(gold.eta.x, gold.eta.z);
+  EXPECT_LT(gold.eta.value.x, gold.eta.value.z);
   EXPECT_FLOAT_EQ(gold.alpha.x, 0.2f);
   EXPECT_FLOAT_EQ(gold.alpha.y, 0.3f);
   const auto& given = material_of<ConductorMaterial>(scene, 3);
@@ -375,7 +375,7 @@ TEST_F(Pbrt, MaterialsOfV4) {
   EXPECT_EQ(given.k, glm::vec3(4, 5, 6));
   EXPECT_FLOAT_EQ(given.alpha.x, 0.3f);
   const auto& mirror = material_of<ConductorMaterial>(scene, 4);
-  const glm::vec3 f = mirror.k * mirror.k / (4.0f + mirror.k * mirror.k);  // Fresnel for eta 1
+  const glm::vec3 f = mirror.k.value * mirror.k.value / (4.0f + mirror.k.value * mirror.k.value);  // Fresnel for eta 1
   expect_near(f, {.25f, .5f, 1.0f}, 1e-3f);
   EXPECT_FLOAT_EQ(mirror.alpha.x, 1e-3f);
   EXPECT_TRUE(warns(scene, "perfectly smooth"));
@@ -402,7 +402,7 @@ TEST_F(Pbrt, MaterialsOfV3) {
   EXPECT_EQ(defaults.specular, glm::vec3(.25f));
   EXPECT_FLOAT_EQ(defaults.alpha, 0.2f);
   const auto& silver = material_of<ConductorMaterial>(scene, 3);
-  EXPECT_NEAR(silver.eta.x, 0.155f, 1e-3f);
+  EXPECT_NEAR(silver.eta.value.x, 0.155f, 1e-3f);
   EXPECT_EQ(silver.k, glm::vec3(1, 2, 3));
   EXPECT_TRUE(scene.warnings.empty());
 }
@@ -433,7 +433,7 @@ TEST_F(Pbrt, SpectraBecomeColours) {
   const auto reflectance = [&](const std::string& spectrum) {
     return material_of<DiffuseMaterial>(
                read_world("Material \"diffuse\" \"spectrum reflectance\" " + spectrum + triangle))
-        .reflectance;
+        .reflectance.value;
   };
   expect_near(reflectance("[300 .5 800 .5]"), glm::vec3(0.5f), 1e-4f);
   const glm::vec3 red = reflectance("[400 0 590 0 600 .9 800 .9]");
@@ -470,12 +470,12 @@ TEST_F(Pbrt, InfiniteLightsAddUp) {
       "LightSource \"infinite\" \"color L\" [1 1 1] \"color scale\" [1 0 2]\n"
       "LightSource \"infinite\" \"float illuminance\" 3.14159265");
   ASSERT_TRUE(scene.environment);
-  expect_near(*scene.environment, {2.5f, 2.0f, 4.5f});
+  expect_near(scene.environment->radiance, {2.5f, 2.0f, 4.5f});
 }
 
 TEST_F(Pbrt, BlackBodiesHaveTheirHue) {
   const auto sky = [&](const std::string& l) {
-    return *read_world("LightSource \"infinite\" \"blackbody L\" " + l).environment;
+    return read_world("LightSource \"infinite\" \"blackbody L\" " + l).environment->radiance;
   };
   const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
   EXPECT_NEAR(glm::dot(sky("2700"), weights), 1.0f, 1e-3f);

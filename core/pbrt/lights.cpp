@@ -34,7 +34,7 @@ std::optional<Emission> make_area_light(const std::string& type, const Parameter
   emission.two_sided = set.get_bool("twosided", false);
   set.ignore({"nsamples", "samples"});
   set.warn_unused(warnings);
-  if (emission.radiance == glm::vec3(0.0f)) return std::nullopt;
+  if (emission.radiance.value == glm::vec3(0.0f)) return std::nullopt;
   return emission;
 }
 

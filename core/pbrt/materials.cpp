@@ -102,8 +102,8 @@ std::optional<Material> coated_diffuse(const ParameterSet& set, Warnings& warnin
 // Without parameters both versions have copper.
 ConductorMaterial conductor_indices(const ParameterSet& set, Warnings& warnings) {
   ConductorMaterial m;
-  m.eta = {0.200438f, 0.924033f, 1.102212f};
-  m.k = {3.912949f, 2.452847f, 2.142188f};
+  m.eta = glm::vec3(0.200438f, 0.924033f, 1.102212f);
+  m.k = glm::vec3(3.912949f, 2.452847f, 2.142188f);
   if (set.any("reflectance") != nullptr) {
     // The index that has this reflectance at normal incidence, with eta = 1.
     const glm::vec3 r = glm::min(reflectance(set, "reflectance", 0.5f, warnings), 0.9999f);
@@ -111,8 +111,8 @@ ConductorMaterial conductor_indices(const ParameterSet& set, Warnings& warnings)
     m.k = 2.0f * glm::sqrt(r) / glm::sqrt(1.0f - r);
     return m;
   }
-  m.eta = get_color(set, "eta", ColorUse::Reflectance, m.eta, warnings);
-  m.k = get_color(set, "k", ColorUse::Reflectance, m.k, warnings);
+  m.eta = get_color(set, "eta", ColorUse::Reflectance, m.eta.value, warnings);
+  m.k = get_color(set, "k", ColorUse::Reflectance, m.k.value, warnings);
   return m;
 }
 

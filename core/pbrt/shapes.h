@@ -13,7 +13,6 @@
 
 namespace lockstep::pbrt {
 
-using Geometry = std::variant<TriangleMesh, Sphere>;
 
 struct ShapeContext {
   glm::dmat4 object_to_world{1.0};

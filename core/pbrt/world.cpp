@@ -97,7 +97,8 @@ void light_source(State& state, const Call& call) {
   const ParameterSet set = with_defaults(state, call, type, "light");
   const std::optional<glm::vec3> added = make_environment(type, set, state.warnings);
   if (!added) return;
-  state.scene.environment = state.scene.environment.value_or(glm::vec3(0.0f)) + *added;
+  state.scene.environment =
+      state.scene.environment.value_or(Environment(glm::vec3(0.0f))).radiance + *added;
 }
 
 void area_light_source(State& state, const Call& call) {
