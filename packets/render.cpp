@@ -127,8 +127,8 @@ class Renderer {
   }
 
   void render_pilot() {
-    const SamplerState state = make_state(
-        pilot_sampler(sampler_), stream_seed(settings_.seed, 1), plan(std::uint32_t(pilot_spp_)));
+    const SamplerState state = make_state(pilot_sampler(sampler_), stream_seed(settings_.seed, 1),
+                                          plan(std::uint32_t(pilot_spp_)));
     pass_.sampler = &state;
     if (sampler_.weight_source == WeightSource::Auto && state_.half_pilot.samples == 0) {
       render_to(state_.pilot, std::uint32_t(pilot_spp_ / 2));
@@ -144,8 +144,10 @@ class Renderer {
     }
     // A render for a time does not know: as if the image got as many samples as the pilot.
     const int samples = settings_.time_seconds > 0.0 ? pilot_spp_ : settings_.spp - pilot_spp_;
-    return make_auto_weights(pilot, variance_of_mean(state_.pilot, state_.half_pilot),
-                             double(pilot_spp_) / std::max(samples, 1));
+    const Image variance = state_.half_pilot.samples > 0
+                               ? variance_of_mean(state_.pilot, state_.half_pilot)
+                               : variance_of_neighbours(pilot);
+    return make_auto_weights(pilot, variance, double(pilot_spp_) / std::max(samples, 1));
   }
 
   // Passes of at most 64 samples, after which the film is whole again: shorter ones where it is

@@ -13,6 +13,12 @@ concept HasPrepare = requires(const SamplerState& s) {
   S::prepare(s, std::uint32_t(0), 0);
 };
 
+// And those that can do part of it for a tile of pixels by prepare_tile().
+template <class S>
+concept HasPrepareTile = requires(const SamplerState& s, const SampleBatch& batch) {
+  S::prepare_tile(s, batch, 0);
+};
+
 // One point, alone.
 template <class S>
 Fractions<std::uint32_t> single_point(const SamplerState& s, std::uint32_t pixel,
@@ -51,6 +57,12 @@ void fill_own(const SamplerState& state, const SampleBatch& batch, int pair, flo
       const auto k = place_in_batch(batch, load<U>(batch.sample + i));
       const Fractions<U> prepared{gather(x, k), gather(y, k)};
       store_point<W>(S::point(state, load<U>(batch.pixel + i), prepared, pair), i, u, v);
+    }
+  } else if constexpr (HasPrepareTile<S>) {
+    const auto tile = S::prepare_tile(state, batch, pair);
+    for (int i = 0; i < batch.count; i += W) {
+      const U pixel = load<U>(batch.pixel + i), sample = load<U>(batch.sample + i);
+      store_point<W>(S::point(state, pixel, sample, pair, tile), i, u, v);
     }
   } else {
     for (int i = 0; i < batch.count; i += W) {

@@ -110,6 +110,25 @@ Image make_auto_weights(const Image& pilot, const Image& variance, double varian
   return weights;
 }
 
+Image variance_of_neighbours(const Image& pilot) {
+  Image variance(pilot.width, pilot.height);
+  for (int y = 0; y < pilot.height; ++y) {
+    for (int x = 0; x < pilot.width; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        double sum = 0.0, squares = 0.0, n = 0.0;
+        for_window(pilot, x, y, 1, [&](int nx, int ny) {
+          // From the middle value: no cancellation where the level is high.
+          const double d = double(pilot.at(nx, ny)[c]) - double(pilot.at(x, y)[c]);
+          sum += d, squares += d * d, n += 1.0;
+        });
+        const double v = n > 1.0 ? (squares - sum * sum / n) / (n - 1.0) : 0.0;
+        variance.at(x, y)[c] = float(std::max(0.0, v));
+      }
+    }
+  }
+  return variance;
+}
+
 double mean_weight(const Image& weights) {
   const double sum = std::accumulate(weights.pixels.begin(), weights.pixels.end(), 0.0);
   return weights.pixels.empty() ? 0.0 : sum / double(weights.pixels.size());

@@ -29,6 +29,10 @@ Image make_weights(const Image& pilot, const WeightSettings& settings);
 // `variance_ratio` times it. One channel.
 Image make_auto_weights(const Image& pilot, const Image& variance, double variance_ratio);
 
+// A variance for a pilot of one sample per pixel: that of the values within a pixel's distance, by
+// channel. Structure counts as noise there: edges are rendered as if they were noisy.
+Image variance_of_neighbours(const Image& pilot);
+
 // The mean over all pixels, and the share of those where the weight is 0.
 double mean_weight(const Image& weights);
 double share_of_zeros(const Image& weights);

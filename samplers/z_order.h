@@ -8,6 +8,7 @@
 #include "samplers/sobol.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
@@ -25,13 +26,21 @@ LOCKSTEP_INLINE U permuted_digit(U digit, U hash) {
   return product ^ ((hash >> 17) & U(3u));
 }
 
+// The upper bits of a permuted index that some indices have in common.
+struct CommonDigits {
+  std::uint32_t above = 0;   // the index's own bits, shifted down
+  std::uint32_t result = 0;  // permuted, in place
+  int bits = 0;
+};
+
 // A random order of the four children of every node of the curve's quadtree, and of the samples
-// below: the base-4 digits of `index`, each permuted by a hash of those before it. With an odd
-// number of bits the last digit is binary.
+// below: the base-4 digits of `index`, each permuted by a hash of those before it, from the one
+// below `common` down to `shift` = `end`. With an odd number of bits the last digit is binary.
 template <class U>
-LOCKSTEP_INLINE U permuted_digits(U index, int bits, U key) {
-  U result(0u), above(0u);
-  for (int shift = bits - 2; shift >= -1; shift -= 2) {
+LOCKSTEP_INLINE U permuted_digits(U index, int bits, U key, const CommonDigits& common = {},
+                                  int end = 0) {
+  U result(common.result), above(common.above);
+  for (int shift = bits - common.bits - 2; shift >= end - 1; shift -= 2) {
     U h = (above + U(std::uint32_t(shift + 2) * 0x9e3779b9u)) ^ key;
     h = h * U(0x7feb352du);
     h = (h ^ (h >> 15)) * U(0x846ca68bu);
@@ -43,21 +52,47 @@ LOCKSTEP_INLINE U permuted_digits(U index, int bits, U key) {
   return result;
 }
 
-// The point of the pixel's sample: sample k of 2^sample_bits, further ones with other keys.
+// A sample's place before permutation, and what makes its order and its points random.
 template <class U>
-LOCKSTEP_INLINE Fractions<U> z_ordered_point(const SamplerState& s, U pixel, U sample,
-                                             int sample_bits, int pair, std::uint32_t seed) {
+struct ZOrder {
+  U index;
+  Hash4<U> keys;
+  int bits;  // of the index
+};
+
+// Sample k of 2^sample_bits; further ones have other keys.
+template <class U>
+LOCKSTEP_INLINE ZOrder<U> z_order(const SamplerState& s, U pixel, U sample, int sample_bits,
+                                  int pair, std::uint32_t seed) {
   const PixelPosition<U> p = position_of(pixel, s.width);
-  // What the index has no room for makes tiles that know nothing of each other.
+  // What the index has no room for makes blocks of pixels that know nothing of each other.
   const int pixel_bits = std::min(s.pixel_bits, (32 - sample_bits) / 2);
-  const U tile = ((p.y >> pixel_bits) << 16) | (p.x >> pixel_bits);
+  const U block = ((p.y >> pixel_bits) << 16) | (p.x >> pixel_bits);
   const U mask((1u << pixel_bits) - 1u);
   const U code = morton_code(PixelPosition<U>{p.x & mask, p.y & mask});
   const U index = (code << sample_bits) | (sample & U((1u << sample_bits) - 1u));
-  const Hash4<U> keys =
-      pcg4d(U(std::uint32_t(pair)), tile, sample >> sample_bits, U(seed ^ 0x20b01u));
-  const U place = permuted_digits(index, 2 * pixel_bits + sample_bits, keys.x);
-  return scrambled_sobol(place, folded(keys.y), folded(keys.z));
+  return {index, pcg4d(U(std::uint32_t(pair)), block, sample >> sample_bits, U(seed ^ 0x20b01u)),
+          2 * pixel_bits + sample_bits};
+}
+
+// What all pixels of the tile of share_tile x share_tile around `pixel` have in common, for samples
+// that agree but for their last `sample_bits` bits.
+inline CommonDigits digits_of_tile(const SamplerState& s, std::uint32_t pixel, std::uint32_t sample,
+                                   int sample_bits, int pair, std::uint32_t seed) {
+  const ZOrder<std::uint32_t> z = z_order(s, pixel, sample, sample_bits, pair, seed);
+  const int own = 2 * std::countr_zero(unsigned(share_tile)) + sample_bits;
+  if (z.bits <= own) return {};
+  return {z.index >> own, permuted_digits(z.index, z.bits, z.keys.x, {}, own), z.bits - own};
+}
+
+// The point of the pixel's sample.
+template <class U>
+LOCKSTEP_INLINE Fractions<U> z_ordered_point(const SamplerState& s, U pixel, U sample,
+                                             int sample_bits, int pair, std::uint32_t seed,
+                                             const CommonDigits& common = {}) {
+  const ZOrder<U> z = z_order(s, pixel, sample, sample_bits, pair, seed);
+  const U place = permuted_digits(z.index, z.bits, z.keys.x, common);
+  return scrambled_sobol(place, folded(z.keys.y), folded(z.keys.z));
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

@@ -67,15 +67,19 @@ inline Values draw(const SamplerState& state, std::uint32_t pixel, int pair, std
   return all;
 }
 
-// One sample of all pixels of an aligned block of side x side, row by row; part of one tile, or of
-// an image that shares no tiles.
+// One sample of all pixels of a block of side x side, row by row; a batch is part of one tile.
 inline Values draw_block(const SamplerState& state, int x0, int y0, int side, int pair,
                          std::uint32_t sample) {
-  Couples c;
+  Values all;
   for (int y = y0; y < y0 + side; ++y) {
-    for (int x = x0; x < x0 + side; ++x) c.add(std::uint32_t(y * state.width + x), sample);
+    for (int x = x0; x < x0 + side;) {
+      Couples c;
+      const int end = std::min(x0 + side, (x / share_tile + 1) * share_tile);
+      for (; x < end; ++x) c.add(std::uint32_t(y * state.width + x), sample);
+      all.append(draw_batch(widest_kernel(), state, std::move(c), pair));
+    }
   }
-  return draw_batch(widest_kernel(), state, std::move(c), pair);
+  return all;
 }
 
 // One sample of every pixel of a square image whose side tiles divide, row by row.

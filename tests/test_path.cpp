@@ -480,7 +480,7 @@ TEST(Mis, GlossySurfacesUnderSphereLights) {
         return quadrature(bsdf, local(centre), local(eye), std::sqrt(1.0 - sin2));
       });
       for (int c = 0; c < 3; ++c) {
-        SCOPED_TRACE("material " + std::to_string(material.index()) + " radius " +
+        SCOPED_TRACE("material " + std::to_string(material.model.index()) + " radius " +
                      std::to_string(radius) + " channel " + std::to_string(c));
         expect_mean(channel_means(scene, {.spp = 64, .seeds = 24}, c), 5.0 * expected[size_t(c)],
                     4e-3);
@@ -500,7 +500,7 @@ TEST(Mis, GlossySurfacesUnderASky) {
       return quadrature(bsdf, local(glm::vec3(3, 2, 0)), local(eye), -1.0, 1000);
     });
     for (int c = 0; c < 3; ++c) {
-      SCOPED_TRACE("material " + std::to_string(material.index()));
+      SCOPED_TRACE("material " + std::to_string(material.model.index()));
       expect_mean(channel_means(scene, {.spp = 64, .seeds = 24}, c), 5.0 * expected[size_t(c)],
                   3e-3);
     }

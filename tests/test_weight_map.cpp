@@ -1,11 +1,14 @@
 // Weight maps against values worked out by hand.
 #include "samplers/weight_map.h"
 
+#include "core/hash.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace lockstep {
 namespace {
@@ -242,6 +245,25 @@ TEST(AutoWeights, GrowWithNoiseAndFallWithLight) {
     EXPECT_LT(w, before) << level;
     before = w;
   }
+}
+
+TEST(NeighbourVariance, IsTheNoiseOfFlatImages) {
+  Image pilot(64, 64);
+  for (std::size_t i = 0; i < pilot.pixels.size(); ++i) {
+    // Uniform noise of width 0.3 on a high level: variance 0.3^2 / 12.
+    pilot.pixels[i] = 1000.0f + 0.3f * unit_float(pcg3d(std::uint32_t(i), 5u, 9u).x);
+  }
+  const Image v = variance_of_neighbours(pilot);
+  const double sum = std::accumulate(v.pixels.begin(), v.pixels.end(), 0.0);
+  EXPECT_NEAR(sum / double(v.pixels.size()), 0.3 * 0.3 / 12.0, 0.0075 * 0.05);
+}
+
+TEST(NeighbourVariance, SeesEdgesAndNothingElse) {
+  const Values row{1, 1, 1, 1, 3, 3, 3, 3};
+  const Image v = variance_of_neighbours(grey(8, row));
+  for (int x : {0, 1, 2, 5, 6, 7}) EXPECT_EQ(v.at(x, 0)[0], 0.0f) << x;
+  EXPECT_NEAR(v.at(3, 0)[0], 4.0 / 3.0, 1e-6);  // of 1, 1, 3
+  EXPECT_EQ(variance_of_neighbours(grey(1, {5})).pixels[0], 0.0f);
 }
 
 // What a pilot with a firefly, an overflow or no light at all may hold.

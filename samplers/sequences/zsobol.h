@@ -15,9 +15,16 @@ struct ZSobolSequence {
       "Ahmed and Wonka 2020, Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error",
       true};
 
+  static CommonDigits prepare_tile(const SamplerState& s, const SampleBatch& batch, int pair) {
+    const int bits = std::bit_width(s.samples - 1);
+    const std::uint32_t last = batch.first_sample + std::uint32_t(batch.samples) - 1;
+    if (batch.first_sample >> bits != last >> bits) return {};
+    return digits_of_tile(s, batch.pixel[0], batch.first_sample, bits, pair, s.seed);
+  }
   template <class U>
-  LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, U sample, int pair) {
-    return z_ordered_point(s, pixel, sample, std::bit_width(s.samples - 1), pair, s.seed);
+  LOCKSTEP_INLINE static Fractions<U> point(const SamplerState& s, U pixel, U sample, int pair,
+                                            const CommonDigits& common = {}) {
+    return z_ordered_point(s, pixel, sample, std::bit_width(s.samples - 1), pair, s.seed, common);
   }
 };
 
