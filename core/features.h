@@ -19,10 +19,13 @@ enum class Feature : unsigned {
   TriangleLights,
   SphereLights,
   Environment,
+  PointLights,
+  SpotLights,
+  DistantLights,
   LightChoice,  // more than one light: one has to be chosen
   FilterTable,  // a pixel filter other than a box over the pixel
 };
-inline constexpr unsigned feature_count = 11;
+inline constexpr unsigned feature_count = 14;
 
 using FeatureMask = std::uint32_t;
 inline constexpr FeatureMask all_features = (1u << feature_count) - 1u;

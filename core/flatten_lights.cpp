@@ -33,8 +33,8 @@ Light flat_light(LightKind kind, glm::vec3 corner, glm::vec3 e1, glm::vec3 e2,
   l.area = kind == LightKind::Triangle ? 0.5f * parallelogram : parallelogram;
   if (parallelogram > 0.0f) l.normal = n / parallelogram;
   l.side = emission.two_sided ? 0.0f : 1.0f;
-  l.power =
-      luminance(emission.radiance.value) * l.area * (emission.two_sided ? 2.0f : 1.0f) * glm::pi<float>();
+  l.power = luminance(emission.radiance.value) * l.area * (emission.two_sided ? 2.0f : 1.0f) *
+            glm::pi<float>();
   return l;
 }
 
@@ -110,6 +110,32 @@ Light environment_light(glm::vec3 radiance, float radius) {
   return l;
 }
 
+Light delta_light(const PointLight& p, float) {
+  Light l{LightKind::Point, p.position};
+  l.radiance = p.intensity;
+  l.power = luminance(p.intensity) * 4.0f * glm::pi<float>();
+  return l;
+}
+
+Light delta_light(const SpotLight& s, float) {
+  Light l{LightKind::Spot, s.position};
+  l.edge1 = {s.cos_inner, s.cos_outer, float(int(s.falloff))};
+  l.edge2 = {std::acos(s.cos_inner), std::acos(s.cos_outer), 0.0f};
+  l.normal = s.direction;
+  l.radiance = s.intensity;
+  l.power = luminance(s.intensity) * 2.0f * glm::pi<float>() *
+            (1.0f - 0.5f * (s.cos_inner + s.cos_outer));
+  return l;
+}
+
+Light delta_light(const DistantLight& d, float radius) {
+  Light l{LightKind::Distant};
+  l.normal = d.direction;
+  l.radiance = d.irradiance;
+  l.power = luminance(d.irradiance) * glm::pi<float>() * radius * radius;
+  return l;
+}
+
 // Probabilities in proportion to power (alike where no light has a usable one), in whole steps of
 // the 2^-24 that a sample resolves, at least one: what a row states is exactly what is drawn.
 std::vector<double> light_cdf(const std::vector<Light>& lights) {
@@ -171,6 +197,10 @@ void flatten_lights(const SceneDescription& description, FlatScene& flat) {
   if (description.environment && description.environment->radiance != glm::vec3(0.0f)) {
     flat.environment_light = std::int32_t(lights.size());
     lights.push_back(environment_light(description.environment->radiance, scene_radius(flat)));
+  }
+  for (const LightSource& source : description.lights) {
+    lights.push_back(
+        std::visit([&](const auto& s) { return delta_light(s, scene_radius(flat)); }, source));
   }
   append_rows(lights, flat);
 }

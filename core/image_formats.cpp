@@ -21,6 +21,7 @@ namespace {
 struct OwnedResult : FormatResult {
   std::string error_text;
   std::vector<float> pixel_values;
+  std::unique_ptr<unsigned char[]> stored_values;
   std::vector<std::string> texts;
   std::vector<FormatAttribute> attribute_list;
   std::vector<unsigned char> bytes;
@@ -31,10 +32,24 @@ std::runtime_error failure(const std::string& what, const std::string& reason) {
   return std::runtime_error(what + ": " + (reason.empty() ? "unknown reason" : reason));
 }
 
-std::unique_ptr<OIIO::ImageInput> open_input(const std::string& path) {
-  // Colours as they are stored, not multiplied by an alpha that is dropped.
+// The extension of `path` names the format; no file of that name is looked for.
+std::unique_ptr<OIIO::ImageInput> open_memory(const std::string& path, const OIIO::ImageSpec& hints,
+                                              OIIO::Filesystem::IOProxy* memory) {
+  auto input = OIIO::ImageInput::create(path.substr(path.rfind('.') + 1));
+  if (!input) throw failure("cannot read this image", OIIO::geterror());
+  OIIO::ImageSpec ignored;
+  if (!input->set_ioproxy(memory) || !input->open(path, ignored, hints)) {
+    throw failure("cannot read this image", input->geterror());
+  }
+  return input;
+}
+
+std::unique_ptr<OIIO::ImageInput> open_input(const std::string& path,
+                                             OIIO::Filesystem::IOProxy* memory = nullptr) {
+  // Colours as they are stored, not multiplied by alpha.
   OIIO::ImageSpec hints;
   hints.attribute("oiio:UnassociatedAlpha", 1);
+  if (memory) return open_memory(path, hints, memory);
   auto input = OIIO::ImageInput::open(path, &hints);
   if (!input) throw failure("cannot read this image", OIIO::geterror());
   return input;
@@ -50,6 +65,12 @@ std::array<int, 3> colour_channels(const OIIO::ImageSpec& spec) {
   return {0, 1, 2};
 }
 
+void check_flat(const OIIO::ImageSpec& spec) {
+  if (spec.depth > 1 || spec.deep) {
+    throw std::runtime_error("volume and deep images are not supported");
+  }
+}
+
 bool is_srgb(const OIIO::ImageSpec& spec) {
   if (spec.format.is_floating_point()) return false;
   const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
@@ -60,9 +81,7 @@ bool is_srgb(const OIIO::ImageSpec& spec) {
 void read_pixels(OwnedResult& result, const std::string& path) {
   const auto input = open_input(path);
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.depth > 1 || spec.deep) {
-    throw std::runtime_error("volume and deep images are not supported");
-  }
+  check_flat(spec);
   const auto channels = colour_channels(spec);
   const int last = std::max({channels[0], channels[1], channels[2]}) + 1;
   const size_t count = size_t(spec.width) * size_t(spec.height);
@@ -81,6 +100,83 @@ void read_pixels(OwnedResult& result, const std::string& path) {
   result.width = spec.width;
   result.height = spec.height;
   result.pixels = result.pixel_values.data();
+}
+
+FormatDepth depth_of(const OIIO::TypeDesc& type) {
+  if (type == OIIO::TypeUInt8) return FormatDepth::Byte;
+  if (type == OIIO::TypeUInt16) return FormatDepth::Short;
+  return type == OIIO::TypeHalf ? FormatDepth::Half : FormatDepth::Float;
+}
+
+struct StoredType {
+  OIIO::TypeDesc type;
+  size_t size;
+  std::array<unsigned char, 4> one;  // bytes of the value 1
+};
+
+StoredType stored_type(FormatDepth depth) {
+  switch (depth) {
+    case FormatDepth::Byte:
+      return {OIIO::TypeUInt8, 1, {0xff}};
+    case FormatDepth::Short:
+      return {OIIO::TypeUInt16, 2, {0xff, 0xff}};
+    case FormatDepth::Half:
+      return {OIIO::TypeHalf, 2, {0x00, 0x3c}};
+    case FormatDepth::Float:
+      break;
+  }
+  return {OIIO::TypeFloat, 4, {0x00, 0x00, 0x80, 0x3f}};
+}
+
+// Interleaved values of `stride` bytes per pixel become red, green, blue and alpha, in place.
+void reorder(unsigned char* values, size_t count, size_t stride, const std::array<int, 3>& channels,
+             int alpha, const StoredType& type) {
+  for (size_t pixel = 0; pixel < count; ++pixel) {
+    const unsigned char* from = values + pixel * stride;
+    std::array<unsigned char, 16> texel;
+    for (size_t c = 0; c < 3; ++c) {
+      std::copy_n(from + size_t(channels[c]) * type.size, type.size, &texel[c * type.size]);
+    }
+    std::copy_n(alpha < 0 ? type.one.data() : from + size_t(alpha) * type.size, type.size,
+                &texel[3 * type.size]);
+    std::copy_n(texel.data(), 4 * type.size, values + pixel * 4 * type.size);
+  }
+}
+
+// Memory is asked for but not touched before the pixels come: a damaged header may claim much.
+void read_stored_pixels(OwnedResult& result, const std::string& path,
+                        OIIO::Filesystem::IOProxy* memory) {
+  const auto input = open_input(path, memory);
+  const OIIO::ImageSpec& spec = input->spec();
+  check_flat(spec);
+  if (spec.width <= 0 || spec.height <= 0) throw std::runtime_error("the image has no pixels");
+  result.depth = depth_of(spec.format);
+  const StoredType type = stored_type(result.depth);
+  const auto channels = colour_channels(spec);
+  const int alpha = spec.alpha_channel;
+  const int last = std::max({channels[0], channels[1], channels[2], alpha}) + 1;
+  const size_t count = size_t(spec.width) * size_t(spec.height);
+  const size_t stride = size_t(std::max(last, 4)) * type.size;
+  if (count * stride > max_stored_bytes) {
+    throw std::runtime_error("an image of " + std::to_string(spec.width) + " x " +
+                             std::to_string(spec.height) + " pixels is too large; scale it down");
+  }
+  result.stored_values.reset(new unsigned char[count * stride]);
+  if (!input->read_image(0, 0, 0, last, type.type, result.stored_values.get(),
+                         OIIO::stride_t(stride))) {
+    throw failure("damaged image", input->geterror());
+  }
+  reorder(result.stored_values.get(), count, stride, channels, alpha, type);
+  result.width = spec.width;
+  result.height = spec.height;
+  result.stored = result.stored_values.get();
+}
+
+void read_stored_file(OwnedResult& result, const char* path, const unsigned char* bytes,
+                      size_t size) {
+  if (!bytes) return read_stored_pixels(result, path, nullptr);
+  OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(bytes), size);
+  read_stored_pixels(result, path, &memory);
 }
 
 void read_texts(OwnedResult& result, const std::string& path) {
@@ -163,12 +259,15 @@ const FormatResult* read(const char* path) {
 const FormatResult* read_attributes(const char* path) {
   return guarded([=](OwnedResult& result) { read_texts(result, path); });
 }
+const FormatResult* read_stored(const char* path, const unsigned char* bytes, size_t size) {
+  return guarded([=](OwnedResult& result) { read_stored_file(result, path, bytes, size); });
+}
 const FormatResult* encode(const char* path, const FormatImage* image) {
   return guarded([=](OwnedResult& result) { encode_file(result, path, *image); });
 }
 void release(const FormatResult* result) { delete static_cast<const OwnedResult*>(result); }
 
-constexpr ImageFormats formats{read, read_attributes, encode, release};
+constexpr ImageFormats formats{read, read_attributes, read_stored, encode, release};
 
 }  // namespace
 }  // namespace lockstep

@@ -12,12 +12,17 @@ struct FormatAttribute {
   const char* value = nullptr;
 };
 
+// How the values of an image are stored: whole numbers as fractions of their largest value.
+enum class FormatDepth { Byte, Short, Half, Float };
+
 // What a call gave: a text if it failed, else what it was asked for.
 struct FormatResult {
   const char* error = nullptr;
   int width = 0;
   int height = 0;
   const float* pixels = nullptr;  // linear red, green, blue
+  FormatDepth depth = FormatDepth::Byte;
+  const void* stored = nullptr;  // red, green, blue, alpha of that depth, as the file has them
   const FormatAttribute* attributes = nullptr;
   size_t attribute_count = 0;
   const unsigned char* file = nullptr;
@@ -34,10 +39,14 @@ struct FormatImage {
   size_t attribute_count = 0;
 };
 
+constexpr size_t max_stored_bytes = size_t(8) << 30;  // of an image that read_stored gives
+
 // Results are the caller's to release; null means that memory ran out.
 struct ImageFormats {
   const FormatResult* (*read)(const char* path);
   const FormatResult* (*read_attributes)(const char* path);
+  // An image in memory, or where `bytes` is null the file of that name.
+  const FormatResult* (*read_stored)(const char* path, const unsigned char* bytes, size_t size);
   const FormatResult* (*encode)(const char* path, const FormatImage* image);
   void (*release)(const FormatResult* result);
 };

@@ -6,9 +6,12 @@
 
 #include <dlfcn.h>
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <new>
+#include <string_view>
 
 namespace lockstep {
 namespace {
@@ -48,6 +51,47 @@ Result checked(const FormatResult* given) {
   return result;
 }
 
+TexelFormat format_of(FormatDepth depth) {
+  switch (depth) {
+    case FormatDepth::Byte:
+      return TexelFormat::Byte;
+    case FormatDepth::Short:
+      return TexelFormat::Short;
+    case FormatDepth::Half:
+      return TexelFormat::Half;
+    case FormatDepth::Float:
+      break;
+  }
+  return TexelFormat::Float;
+}
+
+StoredPixels stored_pixels(const FormatResult& result) {
+  StoredPixels pixels{result.width, result.height, format_of(result.depth), {}};
+  const size_t words =
+      size_t(result.width) * size_t(result.height) * size_t(words_per_texel(pixels.format));
+  pixels.words.resize(words + texel_padding);
+  std::memcpy(pixels.words.data(), result.stored, words * sizeof(std::int32_t));
+  return pixels;
+}
+
+// A name whose extension is that of the file's format, as its first bytes show it: the module
+// chooses its reader by the name.
+std::string name_of_format(const std::vector<unsigned char>& file) {
+  const std::string_view start(reinterpret_cast<const char*>(file.data()),
+                               std::min(file.size(), size_t(16)));
+  const auto starts = [&](std::string_view bytes) { return start.starts_with(bytes); };
+  if (starts("\x89PNG")) return "image.png";
+  if (starts("\xff\xd8\xff")) return "image.jpg";
+  if (starts("RIFF") && start.substr(std::min(start.size(), size_t(8))).starts_with("WEBP")) {
+    return "image.webp";
+  }
+  if (starts("v/1\x01")) return "image.exr";
+  if (starts("#?")) return "image.hdr";
+  if (starts("BM")) return "image.bmp";
+  if (starts("II*") || starts("MM")) return "image.tif";
+  throw Error("the image's format is not known: use PNG or JPEG");
+}
+
 }  // namespace
 
 void check_image_module() {
@@ -62,6 +106,16 @@ Image read_with_module(const std::string& path) {
   Image image(result->width, result->height);
   image.pixels.assign(result->pixels, result->pixels + image.pixels.size());
   return image;
+}
+
+StoredPixels read_stored_with_module(const std::string& path) {
+  return stored_pixels(*checked(image_formats().read_stored(path.c_str(), nullptr, 0)));
+}
+
+StoredPixels read_stored_with_module(const std::vector<unsigned char>& file) {
+  const std::string name = name_of_format(file);
+  return stored_pixels(
+      *checked(image_formats().read_stored(name.c_str(), file.data(), file.size())));
 }
 
 Metadata read_attributes_with_module(const std::string& path) {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include "core/frame.h"
+#include "core/light_description.h"
 #include "core/scene_data.h"
+#include "core/simd_atan.h"
 #include "core/warp.h"
 
 namespace lockstep {
@@ -15,7 +17,8 @@ struct LightSample {
   Vec3<V> wi;
   V distance;  // infinite for the environment
   Vec3<V> radiance;
-  V pdf;  // 0: nothing arrives from there
+  V pdf;  // 0: nothing arrives from there; the light's probability where it is a single direction
+  MaskOf<V> delta = MaskOf<V>(false);  // a single direction, which no other technique finds
 };
 
 template <class V>
@@ -133,6 +136,43 @@ LOCKSTEP_INLINE LightSample<V> sample_environment(const LightRow<V>& light, cons
           light.probability * cosine_hemisphere_pdf(local.z)};
 }
 
+// Share of its axis' intensity that a spot light sends at an angle of this cosine to the axis.
+template <class V>
+LOCKSTEP_INLINE V spot_falloff(const LightRow<V>& light, V cos_axis) {
+  const V inner = light.edge1.x, outer = light.edge1.y, kind = light.edge1.z;
+  // 0 at the outer cone, 1 at the inner one; a hard edge where they are the same.
+  const V width = max(inner - outer, V(1e-7f));
+  const V x = min(max((cos_axis - outer) / width, V(0.0f)), V(1.0f));
+  V share = x * x * (V(3.0f) - (x + x));
+  const auto is = [&](SpotLight::Falloff f) LOCKSTEP_LAMBDA { return kind == V(float(int(f))); };
+  share = select(is(SpotLight::Falloff::Squared), x * x, share);
+  share = select(is(SpotLight::Falloff::Quartic), (x * x) * (x * x), share);
+  const MaskOf<V> in_angle = is(SpotLight::Falloff::LinearAngle);
+  if (any(in_angle)) {
+    const V a = light.edge2.x, b = light.edge2.y;
+    const V sin_axis = sqrt(max(V(0.0f), fma(-cos_axis, cos_axis, V(1.0f))));
+    const V angle = V(2.0f * pi) * atan2_turns(sin_axis, cos_axis);
+    const V y = min(max((b - angle) / max(b - a, V(1e-7f)), V(0.0f)), V(1.0f));
+    share = select(in_angle, y, share);
+  }
+  return share;
+}
+
+// Point, spot and distant lights: the one direction that they are in.
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_delta_light(const LightRow<V>& light, MaskOf<V> spot,
+                                                  MaskOf<V> distant, const Vec3<V>& p) {
+  const Vec3<V> to = light.corner - p;
+  const V distance2 = dot(to, to);
+  const V distance = sqrt(distance2);
+  const Vec3<V> wi = select<V>(distant, -light.normal, to * (V(1.0f) / distance));
+  V scale = select(distant, V(1.0f), V(1.0f) / distance2);
+  if (any(spot)) scale = select(spot, scale * spot_falloff(light, -dot(light.normal, wi)), scale);
+  const MaskOf<V> lit = (scale > V(0.0f)) & is_finite(scale);
+  return {wi, select(distant, V(std::numeric_limits<float>::infinity()), distance),
+          light.radiance * scale, select(lit, light.probability, V(0.0f)), MaskOf<V>(true)};
+}
+
 // A direction from p, with shading frame `frame`, to the lanes' lights.
 template <class V, FeatureMask F = all_features>
 LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> index,
@@ -141,7 +181,8 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
   LightSample<V> s{Vec3<V>(V(0.0f)), V(0.0f), Vec3<V>(V(0.0f)), V(0.0f)};
   const auto merge = [&](MaskOf<V> m, const LightSample<V>& other) LOCKSTEP_LAMBDA {
     s = {select<V>(m, other.wi, s.wi), select(m, other.distance, s.distance),
-         select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf)};
+         select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf),
+         MaskOf<V>((m & other.delta) | s.delta)};
   };
   const auto of_kind = [&](Feature feature, LightKind kind) LOCKSTEP_LAMBDA {
     return needs<F>(scene, feature) ? light.is(kind) : MaskOf<V>(false);
@@ -153,6 +194,12 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
   if (any(flat)) merge(flat, sample_flat_light(light, triangle, p, u));
   if (any(sphere)) merge(sphere, sample_sphere_light(light, p, u));
   if (any(environment)) merge(environment, sample_environment(light, frame, u));
+  if (has_delta_lights<F>(scene)) {
+    const MaskOf<V> spot = of_kind(Feature::SpotLights, LightKind::Spot);
+    const MaskOf<V> distant = of_kind(Feature::DistantLights, LightKind::Distant);
+    const MaskOf<V> delta = spot | distant | of_kind(Feature::PointLights, LightKind::Point);
+    if (any(delta)) merge(delta, sample_delta_light(light, spot, distant, p));
+  }
   return s;
 }
 

@@ -1,6 +1,11 @@
 #include "core/read_scene.h"
 
+#include "core/default_view.h"
 #include "core/error.h"
+#include "core/gltf/reader.h"
+#include "core/mitsuba/reader.h"
+#include "core/obj.h"
+#include "core/ply.h"
 #include "core/substitutes.h"
 
 #include <algorithm>
@@ -30,8 +35,8 @@ std::string first_word(const std::string& path) {
   return file ? word : "";
 }
 
-// pbrt files by name, or by the directive that they begin with.
-bool is_pbrt(const std::string& path) {
+// By the directive that they begin with.
+bool is_pbrt(const std::string& word) {
   static constexpr std::array directives{"Accelerator",
                                          "AttributeBegin",
                                          "Attribute",
@@ -58,9 +63,36 @@ bool is_pbrt(const std::string& path) {
                                          "TransformTimes",
                                          "Translate",
                                          "WorldBegin"};
-  const std::string word = first_word(path);
-  if (fs::path(path).extension() == ".pbrt") return true;
   return std::find(directives.begin(), directives.end(), word) != directives.end();
+}
+
+bool is_obj(const std::string& word) {
+  static constexpr std::array keywords{"mtllib", "usemtl", "o", "g", "s", "v", "vt", "vn", "f"};
+  return std::find(keywords.begin(), keywords.end(), word) != keywords.end();
+}
+
+// A mesh alone, grey under the default light.
+SceneDescription read_ply_scene(const std::string& path) {
+  SceneDescription scene;
+  scene.name = path;
+  scene.materials.emplace_back(DiffuseMaterial{});
+  scene.shapes.push_back({read_ply(path), 0, {}});
+  add_default_view(scene);
+  return scene;
+}
+
+// By content: names may lie. Empty and comment-only files are left to the reader their name asks
+// for.
+SceneDescription read_file(const std::string& path) {
+  const std::string word = first_word(path), extension = fs::path(path).extension().string();
+  if (word.starts_with("glTF") || word.starts_with('{')) return read_gltf(path);
+  if (word.starts_with('<') || word.starts_with("\xef\xbb\xbf<")) return read_mitsuba(path);
+  if (word == "ply") return read_ply_scene(path);
+  if (extension == ".pbrt" || is_pbrt(word)) return read_pbrt(path);
+  if (extension == ".obj" || is_obj(word)) return read_obj_scene(path);
+  throw Error(path +
+              ": unknown scene format; pbrt (version 2 to 4), Mitsuba XML, glTF 2.0, OBJ and PLY "
+              "files are understood");
 }
 
 }  // namespace
@@ -76,12 +108,9 @@ SceneDescription read_scene(const std::string& name) {
   if (fs::is_directory(name, ignored)) {
     throw Error(name + ": is a directory; name the scene file in it");
   }
-  if (is_pbrt(name)) {
-    SceneDescription scene = read_pbrt(name);
-    substitute_unsupported(scene);
-    return scene;
-  }
-  throw Error(name + ": unknown scene format; pbrt files (version 3 or 4) are understood");
+  SceneDescription scene = read_file(name);
+  substitute_unsupported(scene);
+  return scene;
 }
 
 }  // namespace lockstep

@@ -9,7 +9,9 @@
 
 namespace lockstep {
 
-// Reads `name`: a built-in scene, or a path to a pbrt file (v3 or v4).
+// Reads `name`: a built-in scene, or a path to a file of pbrt (v2 to v4), Mitsuba (0.4 to 3), glTF
+// 2.0, OBJ or PLY, told apart by content. What kernels do not render yet is replaced, with warnings
+// (core/substitutes.h).
 // Throws Error ("file:line: what is wrong") on missing or malformed input.
 SceneDescription read_scene(const std::string& name);
 

@@ -85,7 +85,7 @@ struct Scene::Storage {
 Scene::Scene(SceneDescription description, const std::string& embree_isa)
     : storage_(std::make_unique<Storage>()) {
   Storage& s = *storage_;
-  if (description.shapes.empty() && !description.environment) {
+  if (description.shapes.empty() && description.lights.empty() && !description.environment) {
     throw Error(description.name + ": nothing to render: no shape and no light");
   }
   s.flat = flatten(description);

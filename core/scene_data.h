@@ -33,7 +33,18 @@ struct MaterialTable {
 //   8 edge 2, 11 side: +1 emits along the normal (outwards), -1 against it, 0 on both sides
 //   12 unit normal, 15 LightKind as a number
 //   16 radiance
-enum class LightKind : std::int32_t { Parallelogram, Triangle, Sphere, Environment };
+// Point and spot lights: 0 position, 16 intensity; spot lights: 4 cosines of the inner and outer
+// cone and SpotLight::Falloff as a number, 8 those cones' angles, 12 axis. Distant lights: 12 direction in which light
+// travels, 16 irradiance.
+enum class LightKind : std::int32_t {
+  Parallelogram,
+  Triangle,
+  Sphere,
+  Environment,
+  Point,
+  Spot,
+  Distant
+};
 inline constexpr int light_stride = 20;
 
 constexpr Feature light_feature(LightKind kind) {
@@ -99,6 +110,15 @@ inline constexpr FeatureMask area_light_features =
     feature_set(Feature::QuadLights, Feature::TriangleLights, Feature::SphereLights);
 inline constexpr FeatureMask material_features =
     feature_set(Feature::Diffuse, Feature::Conductor, Feature::Coated);
+
+// Lights that no ray can hit.
+inline constexpr FeatureMask delta_light_features =
+    feature_set(Feature::PointLights, Feature::SpotLights, Feature::DistantLights);
+
+template <FeatureMask F>
+constexpr bool has_delta_lights(const SceneData& scene) {
+  return (F & scene.features & delta_light_features) != 0u;
+}
 
 template <FeatureMask F>
 constexpr bool has_area_lights(const SceneData& scene) {

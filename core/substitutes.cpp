@@ -129,11 +129,7 @@ void place_instances(SceneDescription& scene) {
   scene.objects.clear();
 }
 
-void substitute_lights(SceneDescription& scene, Counts& counts) {
-  if (!scene.lights.empty()) {
-    counts["point, spot and distant lights are not rendered yet"] = int(scene.lights.size());
-  }
-  scene.lights.clear();
+void substitute_environment(SceneDescription& scene, Counts& counts) {
   if (scene.environment && scene.environment->mapping != Environment::Mapping::Constant) {
     ++counts["environment maps are not rendered yet; a constant one is used"];
     scene.environment = Environment(0.5f * scene.environment->radiance);
@@ -165,7 +161,7 @@ void substitute_unsupported(SceneDescription& scene) {
     if (const auto* disk = std::get_if<Disk>(&shape.geometry)) shape.geometry = disk_mesh(*disk);
     if (shape.emission) untexture(shape.emission->radiance, counts);
   }
-  substitute_lights(scene, counts);
+  substitute_environment(scene, counts);
   substitute_camera(scene.camera, counts);
   scene.textures.clear();
   for (const auto& [what, times] : counts) {

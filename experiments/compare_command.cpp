@@ -39,7 +39,7 @@ void run_compare(const CompareOptions& options) {
 
 void add_options(CLI::App& command, CompareOptions& options) {
   command
-      .add_option("SCENE", options.scenes, "Built-in scenes (see 'lockstep scenes') or pbrt files")
+      .add_option("SCENE", options.scenes, "Built-in scenes (see 'lockstep scenes') or scene files")
       ->type_name("")
       ->required();
   command

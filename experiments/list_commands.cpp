@@ -25,7 +25,7 @@ void add_scenes_command(CLI::App& program, RunCommand& run) {
   command->description(
       "List the built-in scenes\n\n"
       "List the built-in scenes. Their names are valid wherever a command takes a SCENE, beside\n"
-      "paths to pbrt files (versions 3 and 4).");
+      "paths to files of pbrt (2 to 4), Mitsuba (0.4 to 3), glTF 2.0, OBJ or PLY.");
   command->callback([&run] { run = print_scenes; });
 }
 

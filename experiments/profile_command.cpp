@@ -80,7 +80,7 @@ void run_profile_command(const ProfileOptions& options) {
 }
 
 void add_options(CLI::App& command, ProfileOptions& options) {
-  command.add_option("SCENE", options.scene, "Built-in scene (see 'lockstep scenes') or pbrt file")
+  command.add_option("SCENE", options.scene, "Built-in scene (see 'lockstep scenes') or scene file")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options.directory, "Folder for all results; made if missing")

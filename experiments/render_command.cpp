@@ -108,7 +108,7 @@ void run_render(const RenderOptions& options) {
 }
 
 void add_options(CLI::App& command, RenderOptions& options) {
-  command.add_option("SCENE", options.scene, "Built-in scene (see 'lockstep scenes') or pbrt file")
+  command.add_option("SCENE", options.scene, "Built-in scene (see 'lockstep scenes') or scene file")
       ->type_name("")
       ->required();
   command

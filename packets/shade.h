@@ -90,7 +90,7 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
                   (dot(surface.geometric_normal, s.wi) > V(0.0f));
   if (none(lit)) return;
   const BsdfValue<V> f = eval(bsdf, surface.wo, wi);
-  const V weight = alone ? V(1.0f) : power_heuristic(s.pdf, f.pdf);
+  const V weight = alone ? V(1.0f) : select(s.delta, V(1.0f), power_heuristic(s.pdf, f.pdf));
   const Vec3<V> radiance = throughput * f.f_cos * s.radiance * (weight / s.pdf);
   lit = lit & !(max_component(radiance) <= V(0.0f));  // NaN goes on, to be counted
 

@@ -201,14 +201,38 @@ TEST(ReadScene, MissingFileNamesTheBuiltinScenes) {
   EXPECT_EQ(message.find('\n'), std::string::npos);
 }
 
+// Whatever their name is.
+TEST(ReadScene, FormatsAreToldByContent) {
+  namespace fs = std::filesystem;
+  const fs::path file =
+      fs::temp_directory_path() / ("lockstep-read-format-" + std::to_string(getpid()));
+  const char* const contents[] = {
+      "# a comment\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+      "# a comment\nWorldBegin\nShape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] "
+      "\"integer indices\" [0 1 2]\n",
+      "<scene version=\"3.0.0\"><shape type=\"rectangle\"/></scene>\n"};
+  for (const char* const content : contents) {
+    std::ofstream(file) << content;
+    const SceneDescription scene = read_scene(file.string());
+    ASSERT_EQ(scene.shapes.size(), 1u) << content;
+    EXPECT_FALSE(std::get<TriangleMesh>(scene.shapes[0].geometry).triangles.empty()) << content;
+  }
+  std::ofstream(file) << "{\"asset\": {\"version\": \"1.0\"}}";
+  EXPECT_NE(error_of(file.string()).find("glTF"), std::string::npos);
+  fs::remove(file);
+}
+
 TEST(ReadScene, UnknownFormatsAreErrors) {
   namespace fs = std::filesystem;
   const fs::path directory =
       fs::temp_directory_path() / ("lockstep-read-scene-" + std::to_string(getpid()));
   fs::create_directories(directory);
-  const std::string xml = (directory / "scene.xml").string();
-  std::ofstream(xml) << "<scene version=\"3.0.0\"></scene>\n";
-  EXPECT_NE(error_of(xml).find("scene.xml: unknown scene format"), std::string::npos);
+  const std::string text = (directory / "scene.txt").string();
+  std::ofstream(text) << "once upon a time\n";
+  EXPECT_NE(error_of(text).find("scene.txt: unknown scene format"), std::string::npos);
   const std::string empty = (directory / "empty").string();
   std::ofstream(empty).close();
   EXPECT_NE(error_of(empty).find("unknown scene format"), std::string::npos);

@@ -56,7 +56,8 @@ void append_grid(const TriangleMesh& vertices, const int* patch, int segments, b
       } else if (!vertices.normals.empty()) {
         out.normals.push_back(bilinear(gather(vertices.normals, patch), u, v));
       }
-      if (!vertices.uvs.empty()) out.uvs.push_back(bilinear(gather(vertices.uvs, patch), u, v));
+      out.uvs.push_back(vertices.uvs.empty() ? glm::vec2(u, v)
+                                             : bilinear(gather(vertices.uvs, patch), u, v));
     }
   }
   for (unsigned row = 0; row + 1 < stride; ++row) {

@@ -23,8 +23,14 @@ struct Call {
   }
 };
 
-// The file `name` of the scene: beside the file that mentions it, or beside the main file.
-std::string resolve(const State& state, const std::string& mentioned_in, const std::string& name);
+// The parameters after `type`, and those that Attribute gave for `target`.
+ParameterSet with_defaults(const State& state, const Call& call, const std::string& type,
+                           const char* target);
+
+// Scopes (directives.cpp).
+void push_scope(State& state, const Call& call);
+// Closes the scope opened by `begin` and returns what held before it.
+Attributes pop_scope(State& state, const Call& call, const char* begin);
 
 // Directives before WorldBegin (options.cpp).
 void accelerator(State&, const Call&);
@@ -34,19 +40,26 @@ void film(State&, const Call&);
 void integrator(State&, const Call&);
 void option(State&, const Call&);
 void pixel_filter(State&, const Call&);
+void renderer(State&, const Call&);
 void sampler(State&, const Call&);
+void surface_integrator(State&, const Call&);
 void world_begin(State&, const Call&);
 void world_end(State&, const Call&);
 
-// What the world is made of (world.cpp).
+// What the world is made of (world.cpp, objects.cpp, media.cpp).
 void area_light_source(State&, const Call&);
 void attribute(State&, const Call&);
 void light_source(State&, const Call&);
 void make_named_material(State&, const Call&);
+void make_named_medium(State&, const Call&);
 void material(State&, const Call&);
-void media(State&, const Call&);
+void medium_interface(State&, const Call&);
 void named_material(State&, const Call&);
+void object_begin(State&, const Call&);
+void object_end(State&, const Call&);
+void object_instance(State&, const Call&);
 void shape(State&, const Call&);
 void texture(State&, const Call&);
+void volume(State&, const Call&);
 
 }  // namespace lockstep::pbrt

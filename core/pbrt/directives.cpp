@@ -3,7 +3,7 @@
 #include "core/pbrt/call.h"
 #include "core/pbrt/transform.h"
 
-#include <filesystem>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 #include <utility>
@@ -11,25 +11,6 @@
 namespace lockstep::pbrt {
 
 namespace {
-
-void push_scope(State& state, const Call& call) {
-  state.scopes.push_back({call.name, call.where, state.attributes});
-}
-
-// Closes the scope opened by `begin` and returns what held before it.
-Attributes pop_scope(State& state, const Call& call, std::string_view begin) {
-  if (state.scopes.empty()) {
-    fail(call.where, call.name + " without " + std::string(begin));
-  }
-  if (state.scopes.back().begin != begin) {
-    const Scope& open = state.scopes.back();
-    fail(call.where, call.name + " does not close the " + open.begin + " of line " +
-                         std::to_string(open.where.line));
-  }
-  Attributes saved = std::move(state.scopes.back().saved);
-  state.scopes.pop_back();
-  return saved;
-}
 
 // --- Scopes and coordinate systems
 
@@ -43,21 +24,6 @@ void transform_begin(State& state, const Call& call) { push_scope(state, call); 
 
 void transform_end(State& state, const Call& call) {
   state.attributes.ctm = pop_scope(state, call, "TransformBegin").ctm;
-}
-
-void object_begin(State& state, const Call& call) {
-  call.read_name("the object's name");
-  state.warnings.add(call.where, "object instances are not supported yet; they are left out");
-  push_scope(state, call);
-}
-
-void object_end(State& state, const Call& call) {
-  state.attributes = pop_scope(state, call, "ObjectBegin");
-}
-
-void object_instance(State& state, const Call& call) {
-  call.read_name("the object's name");
-  state.warnings.add(call.where, "object instances are not supported yet; they are left out");
 }
 
 void reverse_orientation(State& state, const Call&) {
@@ -83,7 +49,8 @@ void active_transform(State& state, const Call& call) {
     fail(call.where, "ActiveTransform needs StartTime, EndTime or All, found " + shown(which));
   }
   state.attributes.at_shutter_open = which.text != "EndTime";
-  state.warnings.add(call.where, "motion is not supported; the transforms at the start are used");
+  state.library.warnings.add(call.where,
+                             "motion is not supported; the transforms at the start are used");
 }
 
 void transform_times(State&, const Call& call) {
@@ -92,7 +59,7 @@ void transform_times(State&, const Call& call) {
 
 void include(State& state, const Call& call) {
   const std::string name = call.read_name("a file name");
-  read_file(state, resolve(state, call.where.file, name), call.where);
+  read_file(state, resolve(state.library, call.where.file, name), call.where);
 }
 
 // --- The table
@@ -122,22 +89,26 @@ const std::unordered_map<std::string_view, Directive>& directives() {
       {"Integrator", {integrator, Block::Options}},
       {"LightSource", {light_source, Block::World}},
       {"MakeNamedMaterial", {make_named_material}},
-      {"MakeNamedMedium", {media}},
+      {"MakeNamedMedium", {make_named_medium}},
       {"Material", {material}},
-      {"MediumInterface", {media}},
+      {"MediumInterface", {medium_interface}},
       {"NamedMaterial", {named_material}},
       {"ObjectBegin", {object_begin, Block::World}},
       {"ObjectEnd", {object_end, Block::World}},
       {"ObjectInstance", {object_instance, Block::World}},
       {"Option", {option, Block::Options}},
       {"PixelFilter", {pixel_filter, Block::Options}},
+      {"Renderer", {renderer, Block::Options}},
       {"ReverseOrientation", {reverse_orientation}},
       {"Sampler", {sampler, Block::Options}},
       {"Shape", {shape, Block::World}},
+      {"SurfaceIntegrator", {surface_integrator, Block::Options}},
       {"Texture", {texture}},
       {"TransformBegin", {transform_begin}},
       {"TransformEnd", {transform_end}},
       {"TransformTimes", {transform_times}},
+      {"Volume", {volume, Block::World}},
+      {"VolumeIntegrator", {renderer, Block::Options}},
       {"WorldBegin", {world_begin, Block::Options}},
       {"WorldEnd", {world_end, Block::World}},
   };
@@ -164,17 +135,28 @@ void carry_out(State& state, Lexer& lexer, const Token& token) {
   if (block == Block::Options && state.in_world) {
     fail(where, name + " must come before WorldBegin");
   }
+  ++state.library.order;
   found->second.carry_out(state, {lexer, name, where});
 }
 
 }  // namespace
 
-std::string resolve(const State& state, const std::string& mentioned_in, const std::string& name) {
-  namespace fs = std::filesystem;
-  const fs::path near = fs::path(mentioned_in).parent_path() / name;
-  const fs::path main = fs::path(state.main_file).parent_path() / name;
-  std::error_code ignored;
-  return !fs::exists(near, ignored) && fs::exists(main, ignored) ? main.string() : near.string();
+void push_scope(State& state, const Call& call) {
+  state.scopes.push_back({call.name, call.where, state.attributes});
+}
+
+Attributes pop_scope(State& state, const Call& call, const char* begin) {
+  if (state.scopes.empty()) {
+    fail(call.where, call.name + " without " + std::string(begin));
+  }
+  if (state.scopes.back().begin != begin) {
+    const Scope& open = state.scopes.back();
+    fail(call.where, call.name + " does not close the " + open.begin + " of line " +
+                         std::to_string(open.where.line));
+  }
+  Attributes saved = std::move(state.scopes.back().saved);
+  state.scopes.pop_back();
+  return saved;
 }
 
 void read_file(State& state, const std::string& path, const Location& from) {

@@ -1,4 +1,4 @@
-// The directives of pbrt-v3 and v4: one small function each, found by name in one table.
+// The directives of pbrt-v2, v3 and v4: one small function each, found by name in one table.
 #pragma once
 
 #include "core/pbrt/state.h"

@@ -1,20 +1,34 @@
-// Light sources of pbrt-v3 and v4.
+// Light sources of pbrt.
 #pragma once
 
-#include "core/pbrt/parameters.h"
-#include "core/scene_description.h"
+#include "core/pbrt/state.h"
 
+#include <glm/mat4x4.hpp>
+
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace lockstep::pbrt {
 
-// What AreaLightSource `type` makes the shapes after it emit; nothing if that is black.
-std::optional<Emission> make_area_light(const std::string& type, const ParameterSet& parameters,
-                                        Warnings& warnings);
+// "L" or "I", whichever `name` is, times "scale", which is a number in v4 and a colour in v3.
+// Throws where it is negative.
+glm::vec3 get_light_color(const ParameterSet& parameters, const char* name, Library& library);
 
-// The constant radiance of LightSource "infinite"; other lights give a warning and nothing.
-std::optional<glm::vec3> make_environment(const std::string& type, const ParameterSet& parameters,
-                                          Warnings& warnings);
+// What AreaLightSource `type` makes the shapes after it emit; null if that is black.
+std::shared_ptr<AreaLight> make_area_light(const std::string& type, const ParameterSet& parameters,
+                                           Library& library);
+
+// What a shape emits under `light`.
+Emission emission_of(AreaLight& light, const Geometry& geometry, Library& library);
+
+// A light at a point or from one direction; nothing, with a warning, for other types.
+std::optional<LightSource> make_light(const std::string& type, const ParameterSet& parameters,
+                                      const glm::dmat4& light_to_world, Library& library);
+
+// Adds LightSource "infinite" to what surrounds the scene: constants add up; of images the first
+// stays, alone.
+void add_environment(const ParameterSet& parameters, const glm::dmat4& light_to_world,
+                     Library& library, std::optional<Environment>& environment);
 
 }  // namespace lockstep::pbrt

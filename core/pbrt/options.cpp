@@ -9,7 +9,8 @@ namespace lockstep::pbrt {
 void camera(State& state, const Call& call) {
   const std::string type = call.read_name("the camera's type");
   const ParameterSet set = call.read_parameters(type);
-  state.scene.camera = make_camera(type, state.attributes.ctm, set, state.warnings);
+  state.scene.camera = make_camera(type, state.attributes.ctm, set, state.library.warnings);
+  state.window = make_window(set);
   state.coordinate_systems["camera"] = glm::inverse(state.attributes.ctm);
 }
 
@@ -26,25 +27,46 @@ void pixel_filter(State& state, const Call& call) {
 void sampler(State& state, const Call& call) {
   // The command line chooses the sampler; only the file's sample count matters.
   const ParameterSet set = call.read_parameters(call.read_name("the sampler's type"));
-  state.scene.defaults.spp = set.get_int("pixelsamples", state.scene.defaults.spp);
-  if (state.scene.defaults.spp < 1) fail(call.where, "Sampler needs pixelsamples above 0");
+  int& spp = state.scene.defaults.spp;
+  if (set.any("xsamples") != nullptr || set.any("ysamples") != nullptr) {
+    const int x = set.get_int("xsamples", 4), y = set.get_int("ysamples", 4);
+    constexpr int most = 1 << 15;
+    if (x < 1 || y < 1 || x > most || y > most) {
+      fail(call.where, "Sampler needs xsamples and ysamples above 0");
+    }
+    spp = x * y;
+  }
+  spp = set.get_int("pixelsamples", spp);
+  if (spp < 1) fail(call.where, "Sampler needs pixelsamples above 0");
 }
 
 void integrator(State& state, const Call& call) {
   const std::string type = call.read_name("the integrator's type");
   const ParameterSet set = call.read_parameters(type);
   state.scene.defaults.depth = set.get_int("maxdepth", state.scene.defaults.depth);
-  if (state.scene.defaults.depth < 0) fail(call.where, "Integrator needs maxdepth of 0 or more");
+  if (state.scene.defaults.depth < 0) fail(call.where, call.name + " needs maxdepth of 0 or more");
   if (type != "path" && type != "volpath") {
-    state.warnings.add(call.where,
-                       "Integrator \"" + type + "\": the scene is rendered with the path tracer");
+    state.library.warnings.add(
+        call.where, call.name + " \"" + type + "\": the scene is rendered with the path tracer");
   }
+}
+
+void surface_integrator(State& state, const Call& call) {
+  state.v2_directive = true;
+  integrator(state, call);
+}
+
+// v2's Renderer and VolumeIntegrator; most name what is used anyway.
+void renderer(State& state, const Call& call) {
+  state.v2_directive = true;
+  call.read_parameters(call.read_name("its type"));
 }
 
 void color_space(State& state, const Call& call) {
   const std::string name = call.read_name("the colour space's name");
   if (name == "srgb") return;
-  state.warnings.add(call.where, "ColorSpace \"" + name + "\" is not supported; srgb is used");
+  state.library.warnings.add(call.where,
+                             "ColorSpace \"" + name + "\" is not supported; srgb is used");
 }
 
 void accelerator(State&, const Call& call) {

@@ -198,13 +198,22 @@ std::vector<glm::vec3> ParameterSet::get_points(std::string_view name) const {
   return as_vec3(find(name, {"point", "point3"}));
 }
 
+glm::vec3 ParameterSet::get_point(std::string_view name, glm::vec3 fallback) const {
+  const Parameter* p = find(name, {"point", "point3"});
+  if (p == nullptr) return fallback;
+  if (p->numbers.size() != 3) fail(where(*p), declaration(*p) + " must have three values");
+  return as_vec3(p)[0];
+}
+
 std::vector<glm::vec3> ParameterSet::get_normals(std::string_view name) const {
   return as_vec3(find(name, {"normal", "normal3"}));
 }
 
 std::vector<glm::vec2> ParameterSet::get_uvs() const {
-  const Parameter* p = find("uv", {"point2", "float"});
-  if (p == nullptr) p = find("st", {"point2", "float"});
+  const Parameter* p = nullptr;
+  for (const char* name : {"uv", "st", "texcoords"}) {
+    if (p == nullptr) p = find(name, {"point2", "float"});
+  }
   std::vector<glm::vec2> list;
   for (size_t i = 0; p != nullptr && i + 1 < p->numbers.size(); i += 2) {
     list.emplace_back(p->numbers[i], p->numbers[i + 1]);

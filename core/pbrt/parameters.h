@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lockstep::pbrt {
@@ -30,6 +31,8 @@ class ParameterSet {
   // Reads parameters up to the next directive. `owner` names the directive in messages, such as
   // Shape "sphere".
   ParameterSet(Lexer& lexer, std::string owner, const Location& where);
+  // No parameters.
+  explicit ParameterSet(std::string owner) : owner_(std::move(owner)) {}
 
   const Location& where() const { return where_; }
   const std::string& owner() const { return owner_; }
@@ -48,8 +51,10 @@ class ParameterSet {
   // Lists; empty where absent.
   std::vector<glm::vec3> get_points(std::string_view name) const;
   std::vector<glm::vec3> get_normals(std::string_view name) const;
-  std::vector<glm::vec2> get_uvs() const;  // "uv" or "st", as point2 or float
+  std::vector<glm::vec2> get_uvs() const;  // "uv", "st" or "texcoords", as point2 or float
   std::vector<int> get_ints(std::string_view name) const;
+  // A single point.
+  glm::vec3 get_point(std::string_view name, glm::vec3 fallback) const;
 
   // Adds those of `defaults` whose names are not given.
   void add_defaults(const std::vector<Parameter>& defaults);

@@ -1,13 +1,10 @@
 #include "core/pbrt/shapes.h"
 
 #include "core/pbrt/bilinear.h"
-#include "core/pbrt/transform.h"
+#include "core/pbrt/placement.h"
+#include "core/pbrt/quadrics.h"
 #include "core/ply.h"
 
-#include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
-
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -95,11 +92,6 @@ TriangleMesh ply_mesh(const ParameterSet& set, const ShapeContext& context) {
   }
 }
 
-void turn_over(TriangleMesh& mesh) {
-  for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
-  for (glm::vec3& n : mesh.normals) n = -n;
-}
-
 TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext&) {
   TriangleMesh control;
   control.positions = required_points(set);
@@ -125,73 +117,6 @@ TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext&) {
   }
 }
 
-bool is_unit(glm::vec3 n) { return std::abs(glm::dot(n, n) - 1.0f) < 1e-3f; }
-
-// Files have normals of no length; those become smooth ones.
-void repair_normals(TriangleMesh& mesh) {
-  if (std::all_of(mesh.normals.begin(), mesh.normals.end(), is_unit)) return;
-  std::vector<glm::vec3> given = std::move(mesh.normals);
-  set_smooth_normals(mesh);
-  for (size_t i = 0; i < given.size(); ++i) {
-    if (is_unit(given[i])) mesh.normals[i] = given[i];
-  }
-}
-
-void agree_with_normals(TriangleMesh& mesh) {
-  if (mesh.normals.empty()) return;
-  for (glm::uvec3& t : mesh.triangles) {
-    const glm::vec3 a = mesh.positions[t.x];
-    const glm::vec3 face = glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a);
-    const glm::vec3 shading = mesh.normals[t.x] + mesh.normals[t.y] + mesh.normals[t.z];
-    if (glm::dot(face, shading) < 0.0f) std::swap(t.y, t.z);
-  }
-}
-
-Geometry to_world(TriangleMesh mesh, const ParameterSet& set, const ShapeContext& context) {
-  apply_transform(mesh, glm::mat4(context.object_to_world));
-  const auto is_finite = [](glm::vec3 p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  };
-  if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite)) {
-    fail(set.where(), set.owner() + " has points that leave the range of float in world space");
-  }
-  repair_normals(mesh);
-  if (context.reverse_orientation) turn_over(mesh);
-  agree_with_normals(mesh);
-  return mesh;
-}
-
-bool is_similarity(const glm::dmat3& m, double scale) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = i; j < 3; ++j) {
-      const double expected = i == j ? 1.0 : 0.0;
-      if (std::abs(glm::dot(m[i], m[j]) / (scale * scale) - expected) > 1e-5) return false;
-    }
-  }
-  return true;
-}
-
-Geometry make_sphere(const ParameterSet& set, const ShapeContext& context, Warnings& warnings) {
-  const float radius = set.get_float("radius", 1.0f);
-  if (!(radius > 0.0f)) fail(set.where(), set.owner() + " needs a radius above 0");
-  if (set.get_float("zmin", -radius) > -radius || set.get_float("zmax", radius) < radius ||
-      set.get_float("phimax", 360.0f) < 360.0f) {
-    warnings.add(set.where(), "partial spheres are not supported; the full sphere is used");
-  }
-  const glm::dmat4& m = context.object_to_world;
-  const double scale = glm::length(glm::dvec3(m[0]));
-  if (!is_similarity(glm::dmat3(m), scale)) {
-    constexpr int segments = 128;
-    return to_world(tessellated_sphere(radius, segments), set, context);
-  }
-  const Sphere sphere{glm::vec3(m[3]), static_cast<float>(scale * static_cast<double>(radius)),
-                      context.reverse_orientation};
-  if (!std::isfinite(sphere.radius) || sphere.radius <= 0.0f) {
-    fail(set.where(), set.owner() + " has a radius that leaves the range of float");
-  }
-  return sphere;
-}
-
 struct MeshType {
   std::string_view name;
   TriangleMesh (*make)(const ParameterSet&, const ShapeContext&);  // in object space
@@ -205,14 +130,21 @@ constexpr MeshType mesh_types[] = {
     {"plymesh", ply_mesh},
 };
 
+std::optional<Geometry> make_quadric(const std::string& type, const ParameterSet& set,
+                                     const ShapeContext& context, Warnings& warnings) {
+  if (type == "sphere") return make_sphere(set, context, warnings);
+  if (type == "disk") return make_disk(set, context);
+  if (type == "cylinder") return make_cylinder(set, context);
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Geometry> make_shape(const std::string& type, const ParameterSet& set,
                                    const ShapeContext& context, Warnings& warnings) {
-  if (type == "sphere") {
-    Geometry sphere = make_sphere(set, context, warnings);
+  if (std::optional<Geometry> quadric = make_quadric(type, set, context, warnings)) {
     set.warn_unused(warnings);
-    return sphere;
+    return quadric;
   }
   for (const MeshType& known : mesh_types) {
     if (known.name != type) continue;

@@ -1,4 +1,4 @@
-// Shapes of pbrt-v3 and v4 as world-space geometry.
+// Shapes of pbrt as world-space geometry.
 #pragma once
 
 #include "core/pbrt/parameters.h"
@@ -13,10 +13,10 @@
 
 namespace lockstep::pbrt {
 
-
 struct ShapeContext {
   glm::dmat4 object_to_world{1.0};
   bool reverse_orientation = false;
+  bool may_be_textured = false;  // (u, v) matter
   // Turns a file name in the scene into a path that can be opened.
   std::function<std::string(const std::string&)> resolve;
 };

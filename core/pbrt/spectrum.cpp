@@ -1,9 +1,12 @@
 #include "core/pbrt/spectrum.h"
 
+#include "core/pbrt/named_spectra.h"
+
 #include <glm/common.hpp>
 #include <glm/mat3x3.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 namespace lockstep::pbrt {
 
@@ -70,7 +73,7 @@ double interpolate(const std::vector<double>& samples, double wavelength) {
 }
 
 glm::vec3 from_samples(const ParameterSet& set, const Parameter& p, ColorUse use) {
-  if (p.numbers.size() % 2 != 0) {
+  if (p.numbers.empty() || p.numbers.size() % 2 != 0) {
     fail(set.where(p), "\"spectrum " + p.name + "\" needs pairs of wavelength and value");
   }
   for (size_t i = 2; i < p.numbers.size(); i += 2) {
@@ -91,57 +94,38 @@ glm::vec3 from_black_body(const ParameterSet& set, const Parameter& p) {
   return scale * to_rgb([&](double w) { return black_body(w, kelvin); }, ColorUse::Light);
 }
 
-struct Metal {
-  std::string_view symbol;
-  glm::vec3 eta, k;
-};
-
-// RGB indices of measured metals as published with the renderer Tungsten (ComplexIorData).
-constexpr Metal metals[] = {
-    {"Ag", {0.155265f, 0.116723f, 0.138381f}, {4.828343f, 3.122246f, 2.146950f}},
-    {"Al", {1.657460f, 0.880369f, 0.521229f}, {9.223869f, 6.269523f, 4.837001f}},
-    {"Au", {0.143119f, 0.374957f, 1.442479f}, {3.983160f, 2.385721f, 1.603215f}},
-    {"Cu", {0.200438f, 0.924033f, 1.102212f}, {3.912949f, 2.452847f, 2.142188f}},
-};
-
-// pbrt-v4 "metal-Cu-eta"; pbrt-v3 the file "spds/Cu.eta.spd".
-std::optional<glm::vec3> named_spectrum(std::string_view name) {
-  if (const size_t slash = name.rfind('/'); slash != name.npos) name.remove_prefix(slash + 1);
-  if (name.starts_with("metal-")) name.remove_prefix(6);
-  if (name.ends_with(".spd")) name.remove_suffix(4);
-  if (name.size() < 4 || (name[2] != '-' && name[2] != '.')) return std::nullopt;
-  const std::string_view quantity = name.substr(3);
-  for (const Metal& metal : metals) {
-    if (metal.symbol != name.substr(0, 2)) continue;
-    if (quantity == "eta") return metal.eta;
-    if (quantity == "k") return metal.k;
-  }
-  return std::nullopt;
+// Pairs of wavelength and value in a file; '#' starts a comment.
+std::vector<double> read_samples(const std::string& path, const Location& from) {
+  Lexer lexer(path, read_text(path, from));
+  std::vector<double> samples;
+  while (lexer.peek().kind != Token::Kind::End) samples.push_back(lexer.expect_number("a number"));
+  return samples;
 }
 
 std::optional<glm::vec3> from_spectrum(const ParameterSet& set, const Parameter& p, ColorUse use,
-                                       Warnings& warnings) {
+                                       Library& library) {
   if (p.strings.empty()) return from_samples(set, p, use);
-  const std::optional<glm::vec3> known = named_spectrum(p.strings[0]);
-  if (!known) {
-    warnings.add(set.where(p), "the spectrum \"" + p.strings[0] +
-                                   "\" is not known; the default of " + set.owner() + " is used");
+  if (const auto known = named_spectrum(p.strings[0])) return known;
+  const std::string path = resolve(library, set.where().file, p.strings[0]);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    library.warnings.add(set.where(p), "the spectrum \"" + p.strings[0] +
+                                           "\" is not known; the default of " + set.owner() +
+                                           " is used");
+    return std::nullopt;
   }
-  return known;
+  Parameter read = p;
+  read.numbers = read_samples(path, set.where(p));
+  return from_samples(set, read, use);
 }
 
 }  // namespace
 
 std::optional<glm::vec3> find_color(const ParameterSet& set, std::string_view name, ColorUse use,
-                                    Warnings& warnings) {
-  const Parameter* p =
-      set.find(name, {"rgb", "color", "xyz", "float", "spectrum", "blackbody", "texture"});
+                                    Library& library) {
+  const Parameter* p = set.find(name, {"rgb", "color", "xyz", "float", "spectrum", "blackbody"});
   if (p == nullptr) return std::nullopt;
-  if (p->type == "texture") {
-    warnings.add(set.where(*p), "textures are not supported yet; a mean grey of 0.5 is used");
-    return glm::vec3(0.5f);
-  }
-  if (p->type == "spectrum") return from_spectrum(set, *p, use, warnings);
+  if (p->type == "spectrum") return from_spectrum(set, *p, use, library);
   if (p->type == "blackbody") return from_black_body(set, *p);
   if (p->type == "float") return glm::vec3(set.get_float(name, 0.0f));
   if (p->numbers.size() != 3) {
@@ -152,8 +136,8 @@ std::optional<glm::vec3> find_color(const ParameterSet& set, std::string_view na
 }
 
 glm::vec3 get_color(const ParameterSet& set, std::string_view name, ColorUse use,
-                    glm::vec3 fallback, Warnings& warnings) {
-  return find_color(set, name, use, warnings).value_or(fallback);
+                    glm::vec3 fallback, Library& library) {
+  return find_color(set, name, use, library).value_or(fallback);
 }
 
 }  // namespace lockstep::pbrt

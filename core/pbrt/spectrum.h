@@ -1,7 +1,7 @@
 // Colours of pbrt files, spectra included, as linear Rec. 709 RGB.
 #pragma once
 
-#include "core/pbrt/parameters.h"
+#include "core/pbrt/library.h"
 
 #include <glm/vec3.hpp>
 
@@ -16,12 +16,12 @@ enum class ColorUse {
   Light,        // a spectrum or black body gives its chromaticity, with luminance 1 as in pbrt-v4
 };
 
-// The parameter `name` as a colour; nothing where it is absent. Textures are not supported and give
-// a mean grey.
+// The parameter `name` as a colour; nothing where it is absent or not known (with a warning). A
+// spectrum may be a list of samples, a name or a file of samples; for textures see Inputs.
 std::optional<glm::vec3> find_color(const ParameterSet& parameters, std::string_view name,
-                                    ColorUse use, Warnings& warnings);
+                                    ColorUse use, Library& library);
 
 glm::vec3 get_color(const ParameterSet& parameters, std::string_view name, ColorUse use,
-                    glm::vec3 fallback, Warnings& warnings);
+                    glm::vec3 fallback, Library& library);
 
 }  // namespace lockstep::pbrt

@@ -1,7 +1,6 @@
-// Directives that fill the world: materials, lights and shapes.
+// Directives that fill the world: materials, textures, lights and shapes.
 #include "core/pbrt/call.h"
 #include "core/pbrt/lights.h"
-#include "core/pbrt/materials.h"
 #include "core/pbrt/shapes.h"
 
 #include <algorithm>
@@ -12,10 +11,65 @@ namespace lockstep::pbrt {
 
 namespace {
 
-bool in_object(const State& state) {
-  return std::any_of(state.scopes.begin(), state.scopes.end(),
-                     [](const Scope& scope) { return scope.begin == "ObjectBegin"; });
+int declare_material(State& state, std::string type, ParameterSet set) {
+  Library& library = state.library;
+  library.materials.push_back({std::move(type), std::move(set), library.order});
+  return static_cast<int>(library.materials.size()) - 1;
 }
+
+// Whether images might be looked up by the shape's (u, v).
+bool may_be_textured(State& state, const ParameterSet& shape) {
+  const MaterialReference& reference = state.attributes.material;
+  Library& library = state.library;
+  int index = reference.declared;
+  if (!reference.name.empty()) {
+    const int* named = library.named_materials.find(reference.name, reference.order);
+    if (named == nullptr) return true;
+    index = *named;
+  }
+  const MaterialDeclaration& material = library.materials[static_cast<size_t>(index)];
+  const auto is_texture = [](const Parameter& p) {
+    return p.type == "texture" || p.name == "normalmap";
+  };
+  const auto& light = state.attributes.area_light;
+  return material.type == "mix" || (light && light->image) ||
+         std::any_of(material.set.all().begin(), material.set.all().end(), is_texture) ||
+         std::any_of(shape.all().begin(), shape.all().end(), is_texture);
+}
+
+Surface make_surface(const State& state, const Call& call, const ParameterSet& set) {
+  Surface surface;
+  surface.material = state.attributes.material;
+  surface.medium = state.attributes.inside;
+  surface.order = state.library.order;
+  surface.where = call.where;
+  if (const Parameter* p = set.find("alpha", {"texture"})) {
+    if (p->strings.size() != 1) fail(set.where(*p), "\"texture alpha\" must have one value");
+    surface.alpha_texture = p->strings[0];
+  } else {
+    surface.alpha = std::clamp(set.get_float("alpha", 1.0f), 0.0f, 1.0f);
+  }
+  return surface;
+}
+
+// Whether nothing that is looked up later tells the two apart.
+bool are_alike(const Surface& a, const Surface& b) {
+  const auto is_plain = [](const Surface& s) {
+    return s.medium.empty() && s.alpha_texture.empty() && s.alpha == 1.0f;
+  };
+  return is_plain(a) && is_plain(b) && a.material.declared == b.material.declared &&
+         a.material.order == b.material.order;
+}
+
+int add_surface(State& state, Surface surface) {
+  std::vector<Surface>& surfaces = state.surfaces;
+  if (surfaces.empty() || !are_alike(surfaces.back(), surface)) {
+    surfaces.push_back(std::move(surface));
+  }
+  return static_cast<int>(surfaces.size()) - 1;
+}
+
+}  // namespace
 
 ParameterSet with_defaults(const State& state, const Call& call, const std::string& type,
                            const char* target) {
@@ -24,24 +78,6 @@ ParameterSet with_defaults(const State& state, const Call& call, const std::stri
   if (defaults != state.attributes.defaults.end()) set.add_defaults(defaults->second);
   return set;
 }
-
-int declare_material(State& state, std::optional<Material> material) {
-  state.materials.push_back({std::move(material), -1});
-  return static_cast<int>(state.materials.size()) - 1;
-}
-
-// The scene's index of the current material; nothing for an interface.
-std::optional<int> scene_material(State& state) {
-  DeclaredMaterial& declared = state.materials[state.attributes.material];
-  if (!declared.material) return std::nullopt;
-  if (declared.scene_index < 0) {
-    declared.scene_index = static_cast<int>(state.scene.materials.size());
-    state.scene.materials.push_back(*declared.material);
-  }
-  return declared.scene_index;
-}
-
-}  // namespace
 
 // v4: Attribute "shape" [parameters] sets defaults of the shapes that follow.
 void attribute(State& state, const Call& call) {
@@ -61,81 +97,84 @@ void attribute(State& state, const Call& call) {
 
 void material(State& state, const Call& call) {
   const std::string type = call.read_name("the material's type");
-  const ParameterSet set = with_defaults(state, call, type, "material");
-  state.attributes.material = declare_material(state, make_material(type, set, state.warnings));
+  state.attributes.material = {};
+  state.attributes.material.declared =
+      declare_material(state, type, with_defaults(state, call, type, "material"));
 }
 
 void make_named_material(State& state, const Call& call) {
   const std::string name = call.read_name("the material's name");
-  const ParameterSet set = with_defaults(state, call, name, "material");
+  ParameterSet set = with_defaults(state, call, name, "material");
   const std::string type = set.get_string("type", "");
   if (set.any("type") == nullptr) {
     fail(call.where, set.owner() + " needs \"string type\"");
   }
-  state.named_materials[name] = declare_material(state, make_material(type, set, state.warnings));
+  const int index = declare_material(state, type, std::move(set));
+  state.library.named_materials.declare(name, state.library.order, index);
 }
 
 void named_material(State& state, const Call& call) {
   const std::string name = call.read_name("the material's name");
-  const auto found = state.named_materials.find(name);
-  if (found == state.named_materials.end()) {
-    fail(call.where, "NamedMaterial \"" + name + "\" has not been defined");
+  state.attributes.material = {0, name, state.library.order, call.where};
+  if (state.library.named_materials.find(name, state.library.order) == nullptr) {
+    state.unknown_materials.push_back(state.attributes.material);
   }
-  state.attributes.material = found->second;
 }
 
 void texture(State& state, const Call& call) {
-  call.read_name("the texture's name");
-  call.read_name("the texture's value type");
+  const std::string name = call.read_name("the texture's name");
+  const std::string value = call.read_name("the texture's value type");
   const std::string type = call.read_name("the texture's type");
-  with_defaults(state, call, type, "texture");
-  state.warnings.add(call.where, "textures are not supported yet; a mean grey of 0.5 is used");
+  const bool is_color = value == "spectrum" || value == "color";
+  if (!is_color && value != "float") {
+    fail(call.where, "Texture \"" + name + "\" is of the type \"" + value +
+                         "\"; it must be spectrum, color or float");
+  }
+  Library& library = state.library;
+  auto& textures = is_color ? library.color_textures : library.float_textures;
+  ParameterSet set = with_defaults(state, call, type, "texture");
+  textures.declare(name, library.order, {name, type, std::move(set), library.order});
 }
 
 void light_source(State& state, const Call& call) {
   const std::string type = call.read_name("the light's type");
   const ParameterSet set = with_defaults(state, call, type, "light");
-  const std::optional<glm::vec3> added = make_environment(type, set, state.warnings);
-  if (!added) return;
-  state.scene.environment =
-      state.scene.environment.value_or(Environment(glm::vec3(0.0f))).radiance + *added;
+  if (type == "infinite") {
+    add_environment(set, state.attributes.ctm, state.library, state.scene.environment);
+  } else if (const auto light = make_light(type, set, state.attributes.ctm, state.library)) {
+    state.scene.lights.push_back(*light);
+  }
 }
 
 void area_light_source(State& state, const Call& call) {
   const std::string type = call.read_name("the area light's type");
   const ParameterSet set = with_defaults(state, call, type, "light");
-  state.attributes.emission = make_area_light(type, set, state.warnings);
+  state.attributes.area_light = make_area_light(type, set, state.library);
 }
 
 void shape(State& state, const Call& call) {
   const std::string type = call.read_name("the shape's type");
   const ParameterSet set = with_defaults(state, call, type, "shape");
+  Surface surface = make_surface(state, call, set);
   ShapeContext context;
   context.object_to_world = state.attributes.ctm;
   context.reverse_orientation = state.attributes.reverse_orientation;
-  context.resolve = [&](const std::string& name) { return resolve(state, call.where.file, name); };
-  std::optional<Geometry> geometry = make_shape(type, set, context, state.warnings);
-  if (!geometry || in_object(state)) return;
+  context.may_be_textured = may_be_textured(state, set);
+  context.resolve = [&](const std::string& name) {
+    return resolve(state.library, call.where.file, name);
+  };
+  std::optional<Geometry> geometry = make_shape(type, set, context, state.library.warnings);
+  if (!geometry) return;
 
-  const std::optional<int> index = scene_material(state);
-  if (!index) {
-    state.warnings.add(call.where, "shapes with an interface material are left out");
-    return;
+  Shape made{std::move(*geometry), add_surface(state, std::move(surface)), {}};
+  AreaLight* light = state.attributes.area_light.get();
+  if (light != nullptr && state.open_object != nullptr) {
+    state.library.warnings.add(call.where, "shapes of objects do not emit; place them without one");
+  } else if (light != nullptr) {
+    made.emission = emission_of(*light, made.geometry, state.library);
   }
-  state.scene.shapes.push_back({std::move(*geometry), *index, state.attributes.emission});
-}
-
-void media(State& state, const Call& call) {
-  while (call.lexer.peek().kind == Token::Kind::String) {
-    // MediumInterface has one or two names, MakeNamedMedium a name and parameters.
-    const bool named = call.lexer.peek().text.find(' ') == std::string_view::npos;
-    if (named) {
-      call.lexer.next();
-    } else {
-      ParameterSet(call.lexer, call.name, call.where);
-    }
-  }
-  state.warnings.add(call.where, "participating media are not supported; they are left out");
+  auto& shapes = state.open_object != nullptr ? state.open_object->shapes : state.scene.shapes;
+  shapes.push_back(std::move(made));
 }
 
 }  // namespace lockstep::pbrt
