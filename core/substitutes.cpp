@@ -1,8 +1,11 @@
 #include "core/substitutes.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -25,6 +28,12 @@ void untexture(FloatInput& input, Counts& counts) {
   ++counts["textures are not rendered yet; half of what scales them is used"];
 }
 
+// Microfacets as kernels have them need some roughness: a mirror's reflection blurs by a pixel or
+// so.
+constexpr float least_alpha = 1e-3f;
+float roughened(float alpha) { return std::max(alpha, least_alpha); }
+glm::vec2 roughened(glm::vec2 alpha) { return {roughened(alpha.x), roughened(alpha.y)}; }
+
 MaterialModel substitute(DiffuseMaterial m, Counts& counts) {
   untexture(m.reflectance, counts);
   if (m.sigma != FloatInput(0.0f)) ++counts["rough diffuse materials are rendered as Lambert's"];
@@ -32,11 +41,25 @@ MaterialModel substitute(DiffuseMaterial m, Counts& counts) {
   return m;
 }
 
+// Kernels have no colour beside the indices of refraction: indices that reflect as much at normal
+// incidence.
+void fold_specular(ConductorMaterial& m) {
+  const glm::vec3 eta = m.eta.value, k = m.k.value;
+  const glm::vec3 below = (eta - 1.0f) * (eta - 1.0f) + k * k;
+  const glm::vec3 metal = below / (below + 4.0f * eta);
+  const glm::vec3 r = glm::clamp(metal * m.specular.value, glm::vec3(0.0f), glm::vec3(0.9999f));
+  m.eta = ColorInput(glm::vec3(1.0f));
+  m.k = ColorInput(2.0f * glm::sqrt(r) / glm::sqrt(1.0f - r));
+  m.specular = ColorInput{};
+}
+
 MaterialModel substitute(ConductorMaterial m, Counts& counts) {
   untexture(m.eta, counts);
   untexture(m.k, counts);
+  untexture(m.specular, counts);
+  if (m.specular != ColorInput{}) fold_specular(m);
   untexture(m.alpha_scale, counts);
-  m.alpha *= m.alpha_scale.value;
+  m.alpha = roughened(m.alpha * m.alpha_scale.value);
   m.alpha_scale = FloatInput{};
   return m;
 }
@@ -45,7 +68,7 @@ MaterialModel substitute(CoatedMaterial m, Counts& counts) {
   untexture(m.diffuse, counts);
   untexture(m.specular, counts);
   untexture(m.alpha_scale, counts);
-  m.alpha *= m.alpha_scale.value;
+  m.alpha = roughened(m.alpha * m.alpha_scale.value);
   m.alpha_scale = FloatInput{};
   return m;
 }
@@ -56,7 +79,7 @@ MaterialModel substitute(const PrincipledMaterial& m, Counts& counts) {
   untexture(alpha, counts);
   CoatedMaterial coated;
   coated.diffuse = m.base_color;
-  coated.alpha = std::max(alpha.value, 1e-3f);
+  coated.alpha = alpha.value;
   coated.eta = m.eta;
   return substitute(coated, counts);
 }

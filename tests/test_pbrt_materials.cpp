@@ -3,6 +3,7 @@
 
 #include <glm/geometric.hpp>
 
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -309,15 +310,21 @@ TEST_F(Pbrt, ScatteringAndPresetsWarn) {
 
 // --- Broken materials
 
+// Materials "0" to "count": the first of `type`, each other a mix of twice the one before.
+std::string chain_of_mixes(const char* type, int count) {
+  std::ostringstream text;
+  text << "MakeNamedMaterial \"0\" \"string type\" \"" << type << "\"\n";
+  for (int i = 1; i <= count; ++i) {
+    text << "MakeNamedMaterial \"" << i << "\" \"string type\" \"mix\" \"string materials\" [\""
+         << i - 1 << "\" \"" << i - 1 << "\"]\n";
+  }
+  return text.str();
+}
+
 TEST_F(Pbrt, BrokenMaterialsSayWhereAndWhat) {
   const std::string world = "WorldBegin\n",
                     red = "MakeNamedMaterial \"red\" \"string type\" \"mix\"";
-  std::string chain = world + "MakeNamedMaterial \"0\" \"string type\" \"diffuse\"\n";
-  for (int i = 1; i <= 100; ++i) {
-    const std::string name = std::to_string(i), last = "\"" + std::to_string(i - 1) + "\" ";
-    chain += "MakeNamedMaterial \"" + name + "\" \"string type\" \"mix\" \"string materials\" [" +
-             last + last + "]\n";
-  }
+  const std::string chain = world + chain_of_mixes("diffuse", 100);
   struct Case {
     std::string text, message;
   };
@@ -354,14 +361,8 @@ TEST_F(Pbrt, BrokenMaterialsSayWhereAndWhat) {
 
 // Sixty mixes of twice the one before, in a medium: no more copies than materials.
 TEST_F(Pbrt, SharedPartsOfMixesAreCopiedOnce) {
-  std::string text = "MakeNamedMaterial \"0\" \"string type\" \"dielectric\"\n";
-  for (int i = 1; i <= 60; ++i) {
-    const std::string name = std::to_string(i), last = "\"" + std::to_string(i - 1) + "\" ";
-    text += "MakeNamedMaterial \"" + name + "\" \"string type\" \"mix\" \"string materials\" [" +
-            last + last + "]\n";
-  }
   const SceneDescription scene = read_world(
-      text +
+      chain_of_mixes("dielectric", 60) +
       "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1] \"rgb "
       "sigma_s\" [0 0 0]\nMediumInterface \"m\" \"\" NamedMaterial \"60\"" +
       triangle);

@@ -35,9 +35,9 @@ SceneDescription sheets_on_each_other() {
   d.name = "sheets";
   d.film.width = 48, d.film.height = 32;
   d.environment = glm::vec3(1.0f);
-  const int red = builtin::add_material(d, DiffuseMaterial{{0.8f, 0.1f, 0.1f}});
-  const int blue = builtin::add_material(d, DiffuseMaterial{{0.1f, 0.1f, 0.8f}});
-  const int white = builtin::add_material(d, DiffuseMaterial{{0.7f, 0.7f, 0.7f}});
+  const int red = builtin::add_material(d, DiffuseMaterial{glm::vec3(0.8f, 0.1f, 0.1f)});
+  const int blue = builtin::add_material(d, DiffuseMaterial{glm::vec3(0.1f, 0.1f, 0.8f)});
+  const int white = builtin::add_material(d, DiffuseMaterial{glm::vec3(0.7f, 0.7f, 0.7f)});
   builtin::add_rectangle(d, {0, 0, 0}, {0, 0, 2}, {2, 0, 0}, red);
   builtin::add_rectangle(d, {0.3f, 0, 0.2f}, {0, 0, 1.7f}, {2, 0, 0}, blue);
   builtin::add_box(d, {0.4f, 0, 0.3f}, {0.7f, 0.9f, 0.6f}, 20, white);
