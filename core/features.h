@@ -15,17 +15,32 @@ enum class Feature : unsigned {
   Diffuse,
   Conductor,
   Coated,
+  RoughDiffuse,
+  DiffuseTransmission,
+  Dielectric,
+  Principled,
+  Mix,
   QuadLights,
   TriangleLights,
   SphereLights,
-  Environment,
+  Environment,  // constant
+  EnvironmentMap,
   PointLights,
   SpotLights,
   DistantLights,
+  TexturedLights,
   LightChoice,  // more than one light: one has to be chosen
+  Textures,     // of materials
+  Tangents,     // frames along the texture coordinates: for anisotropic materials
+  SurfaceMaps,  // normal and bump maps
+  Opacity,      // surfaces with holes; traversal alone sees them
+  OneSided,     // materials whose back absorbs
+  Absorption,   // inside dielectrics
   FilterTable,  // a pixel filter other than a box over the pixel
+  Lens,
+  Orthographic,
 };
-inline constexpr unsigned feature_count = 14;
+inline constexpr unsigned feature_count = 29;
 
 using FeatureMask = std::uint32_t;
 inline constexpr FeatureMask all_features = (1u << feature_count) - 1u;

@@ -1,69 +1,15 @@
 #include "core/flatten.h"
 
 #include "core/coincidence.h"
-#include "core/error.h"
-#include "core/fresnel.h"
+#include "core/fingerprint.h"
 
 #include <algorithm>
-#include <bit>
-#include <stdexcept>
+#include <array>
 
 namespace lockstep {
 namespace {
 
 void append(std::vector<float>& out, glm::vec3 v) { out.insert(out.end(), {v.x, v.y, v.z}); }
-
-// Reflectance of diffuse light that meets a dielectric interface from its dense side
-// (1 - r_in) = (1 - r_out) / eta^2, with r_out the cosine-weighted mean of Fresnel's formula.
-float inner_reflectance(float eta) {
-  constexpr int steps = 512;
-  double outer = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const float cos_i = (float(i) + 0.5f) / steps;
-    outer += 2.0 * cos_i * fresnel_dielectric(cos_i, eta) / steps;
-  }
-  return float(1.0 - (1.0 - outer) / (double(eta) * double(eta)));
-}
-
-struct MaterialRow {
-  MaterialKind kind;
-  std::vector<float> parameters;
-};
-
-MaterialRow row(const DiffuseMaterial& m) {
-  MaterialRow r{MaterialKind::Diffuse, {}};
-  append(r.parameters, m.reflectance.value);
-  return r;
-}
-MaterialRow row(const ConductorMaterial& m) {
-  MaterialRow r{MaterialKind::Conductor, {}};
-  append(r.parameters, m.eta.value);
-  append(r.parameters, m.k.value);
-  r.parameters.insert(r.parameters.end(), {m.alpha.x, m.alpha.y});
-  return r;
-}
-MaterialRow row(const CoatedMaterial& m) {
-  MaterialRow r{MaterialKind::Coated, {}};
-  append(r.parameters, m.diffuse.value);
-  append(r.parameters, m.specular.value);
-  r.parameters.insert(r.parameters.end(),
-                      {m.alpha, m.eta, m.layered ? 1.0f : 0.0f, inner_reflectance(m.eta)});
-  return r;
-}
-
-// substitute_unsupported() has replaced the others.
-template <class Model>
-MaterialRow row(const Model&) {
-  throw std::logic_error("a material model without a kernel");
-}
-
-void append_material(FlatScene& flat, const Material& material) {
-  MaterialRow r = std::visit([](const auto& m) { return row(m); }, material.model);
-  r.parameters.resize(material_stride, 0.0f);
-  flat.material_kinds.push_back(std::int32_t(r.kind));
-  flat.material_parameters.insert(flat.material_parameters.end(), r.parameters.begin(),
-                                  r.parameters.end());
-}
 
 void append_mesh(FlatScene& flat, const TriangleMesh& mesh) {
   const auto first_vertex = std::int32_t(flat.positions.size() / 3);
@@ -73,7 +19,7 @@ void append_mesh(FlatScene& flat, const TriangleMesh& mesh) {
   }
 }
 
-void append_shape(FlatScene& flat, const Shape& shape) {
+void append_shape(FlatScene& flat, const Shape& shape, bool one_sided) {
   const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
   FlatGeometry g{std::int32_t(flat.triangles.size() / 3), 0, mesh == nullptr};
   if (mesh) {
@@ -86,21 +32,40 @@ void append_shape(FlatScene& flat, const Shape& shape) {
     flat.spheres.push_back(sphere.radius);
   }
   flat.geometries.push_back(g);
-  const int flags = (mesh ? 0 : geometry_is_sphere) |
-                    (mesh && !mesh->normals.empty() ? geometry_is_smooth : 0) |
-                    flat.material_kinds[size_t(shape.material)] << geometry_kind_shift;
+  const auto flag = [](bool set, GeometryFlag f) { return set ? int(f) : 0; };
+  const int flags =
+      flag(!mesh, geometry_is_sphere) | flag(mesh && !mesh->normals.empty(), geometry_is_smooth) |
+      flag(mesh && !mesh->uvs.empty(), geometry_has_uvs) | flag(one_sided, geometry_is_one_sided) |
+      flat.material_kinds[size_t(shape.material)] << geometry_kind_shift;
   flat.geometry_rows.insert(flat.geometry_rows.end(),
                             {mesh ? g.first_triangle : 0, shape.material, -1, flags});
 }
 
-// What the shapes need.
-FeatureMask shape_features(const FlatScene& flat) {
+// What hits on the shapes need: of materials that no shape has, nothing.
+FeatureMask material_features_of(const SceneDescription& description, const FlatScene& flat) {
+  std::vector<bool> used(description.materials.size(), false);
+  std::vector<int> open;
+  for (const Shape& shape : description.shapes) open.push_back(shape.material);
+  FeatureMask set = 0;
+  while (!open.empty()) {
+    const auto material = std::size_t(open.back());
+    open.pop_back();
+    if (used[material]) continue;
+    used[material] = true;
+    set |= flat.material_features[material];
+    if (const auto* mix = std::get_if<MixMaterial>(&description.materials[material].model)) {
+      open.insert(open.end(), {mix->first, mix->second});
+    }
+  }
+  return set;
+}
+
+FeatureMask geometry_features(const FlatScene& flat) {
   FeatureMask set = 0;
   for (std::size_t i = 3; i < flat.geometry_rows.size(); i += geometry_stride) {
     const int flags = flat.geometry_rows[i];
     if (flags & geometry_is_sphere) set |= bit(Feature::Spheres);
     if (flags & geometry_is_smooth) set |= bit(Feature::SmoothNormals);
-    set |= bit(material_feature(MaterialKind(flags >> geometry_kind_shift)));
   }
   return set;
 }
@@ -123,11 +88,27 @@ void append_normals(FlatScene& flat, const SceneDescription& description) {
   }
 }
 
+// Of every vertex as soon as anything reads them.
+void append_uvs(FlatScene& flat, const SceneDescription& description) {
+  constexpr FeatureMask readers =
+      uv_features | feature_set(Feature::Opacity, Feature::TexturedLights);
+  if (!(flat.features & readers)) return;
+  for (const Shape& shape : description.shapes) {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    if (!mesh) continue;
+    for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
+      const glm::vec2 uv = mesh->uvs.empty() ? glm::vec2(0.0f) : mesh->uvs[i];
+      flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
+    }
+  }
+}
+
 // Embree reads 16 bytes per vertex, kernels rows of four values. Lanes on spheres look up the first
 // triangle.
 void pad(FlatScene& flat) {
   append(flat.positions, glm::vec3(0.0f));
   if (!flat.normals.empty()) append(flat.normals, glm::vec3(0.0f));
+  if (!flat.uvs.empty()) flat.uvs.insert(flat.uvs.end(), 4, 0.0f);
   flat.triangles.insert(flat.triangles.end(), 4, 0);
   flat.material_parameters.insert(flat.material_parameters.end(), 3, 0.0f);
 }
@@ -150,15 +131,18 @@ void reserve(const SceneDescription& description, FlatScene& flat) {
 
 }  // namespace
 
-FlatScene flatten(const SceneDescription& description) {
+FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance) {
   FlatScene flat;
   reserve(description, flat);
-  for (const Material& m : description.materials) append_material(flat, m);
-  for (const Shape& shape : description.shapes) append_shape(flat, shape);
-  flat.features = shape_features(flat);
+  flatten_materials(description, flat);
+  for (const Shape& shape : description.shapes) {
+    append_shape(flat, shape, !description.materials[size_t(shape.material)].two_sided);
+  }
+  flat.features = geometry_features(flat) | material_features_of(description, flat);
   append_normals(flat, description);
-  flatten_lights(description, flat);
+  flatten_lights(description, environment_radiance, flat);
   flat.features |= light_features(flat);
+  append_uvs(flat, description);
   flat.coincident = find_coincident_triangles(flat.positions.data(), flat.triangles.data(),
                                               flat.triangles.size() / 3);
   pad(flat);
@@ -167,35 +151,43 @@ FlatScene flatten(const SceneDescription& description) {
 }
 
 std::uint64_t fingerprint(const FlatScene& flat) {
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a, a word at a time
-  const auto add = [&](const auto& values) {
-    hash = (hash ^ values.size()) * 0x100000001b3u;
-    for (const auto value : values) {
-      hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x100000001b3u;
-      hash ^= hash >> 29;
-    }
-  };
+  Fingerprint print;
   const CameraData& c = flat.camera;
-  std::vector<float> camera{float(c.width), float(c.height)};
-  for (const glm::vec3 v : {c.origin, c.right, c.down, c.corner}) append(camera, v);
+  for (const glm::vec3 v : {c.origin, c.right, c.down, c.corner, c.lens_x, c.lens_y}) {
+    print.add_all(std::array{v.x, v.y, v.z});
+  }
+  print.add_all(std::array{float(c.width), float(c.height), c.focal_distance});
+  print.add_all(std::array{std::int32_t(flat.features), flat.environment_light});
   using Floats = std::initializer_list<const std::vector<float>*>;
   for (const auto* values :
-       Floats{&flat.positions, &flat.normals, &flat.spheres, &flat.material_parameters,
-              &flat.light_rows, &flat.filter_x, &flat.filter_y, &camera}) {
-    add(*values);
+       Floats{&flat.positions, &flat.normals, &flat.uvs, &flat.spheres, &flat.material_parameters,
+              &flat.light_rows, &flat.light_cdf, &flat.filter_x, &flat.filter_y}) {
+    print.add_all(*values);
   }
-  for (const auto* values : {&flat.triangles, &flat.geometry_rows, &flat.material_kinds}) {
-    add(*values);
+  using Integers = std::initializer_list<const std::vector<std::int32_t>*>;
+  for (const auto* values : Integers{&flat.triangles, &flat.geometry_rows, &flat.material_kinds,
+                                     &flat.material_maps, &flat.light_of_primitive}) {
+    print.add_all(*values);
   }
-  return hash;
+  const auto add_binding = [&](const TextureBinding& b) {
+    print.add_all(std::array{b.texture, b.column, b.columns, std::int32_t(b.is_color), b.channel});
+    print.add_all(std::array{b.power, b.scale.x, b.scale.y, b.scale.z});
+  };
+  for (const TextureBinding& b : flat.texture_bindings) add_binding(b);
+  for (const Opacity& o : flat.opacities) {
+    print.add_all(std::array{o.value, o.cutoff});
+    add_binding(o.binding);
+  }
+  return print.value();
 }
 
 std::size_t memory_bytes(const FlatScene& flat) {
   const auto sum = [](const auto&... arrays) {
     return (0u + ... + (arrays.capacity() * sizeof(arrays[0])));
   };
-  return sum(flat.positions, flat.normals, flat.triangles, flat.geometries, flat.geometry_rows,
-             flat.coincident, flat.spheres, flat.material_kinds, flat.material_parameters,
+  return sum(flat.positions, flat.normals, flat.uvs, flat.triangles, flat.geometries,
+             flat.geometry_rows, flat.coincident, flat.spheres, flat.material_kinds,
+             flat.material_parameters, flat.material_maps, flat.texture_bindings, flat.opacities,
              flat.light_of_primitive, flat.light_kinds, flat.light_rows, flat.light_cdf,
              flat.filter_x, flat.filter_y);
 }
@@ -205,10 +197,12 @@ SceneData view(const FlatScene& flat) {
   d.triangles = flat.triangles.data();
   d.positions = flat.positions.data();
   d.normals = flat.normals.data();
+  d.uvs = flat.uvs.data();
   d.light_of_primitive = flat.light_of_primitive.data();
   if (!flat.coincident.empty()) d.coincident = flat.coincident.data();
   d.geometry = {flat.geometry_rows.data(), flat.spheres.data()};
-  d.materials = {flat.material_parameters.data()};
+  d.materials = {flat.material_parameters.data(), flat.material_kinds.data(),
+                 flat.material_maps.data(), flat.texture_bindings.data(), nullptr};
   d.lights = {int(flat.light_kinds.size()), flat.light_rows.data(), flat.light_cdf.data()};
   d.camera = flat.camera;
   if (!flat.filter_x.empty()) {

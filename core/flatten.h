@@ -13,9 +13,19 @@ struct FlatGeometry {
   bool is_sphere = false;
 };
 
+// Which share of a surface is there (see Material::opacity).
+struct Opacity {
+  float value = 1.0f;      // where the binding has no texture
+  TextureBinding binding;  // column unused
+  float cutoff = 0.0f;
+
+  bool has_holes() const { return value < 1.0f || binding.texture >= 0; }
+};
+
 struct FlatScene {
   std::vector<float> positions;         // xyz per vertex, and one vertex of padding for Embree
   std::vector<float> normals;           // xyz per vertex; empty where no mesh is smooth
+  std::vector<float> uvs;               // two per vertex; empty where nothing reads them
   std::vector<std::int32_t> triangles;  // three indices each, over all meshes, and one of padding
   std::vector<FlatGeometry> geometries;
   std::vector<std::int32_t> geometry_rows;
@@ -23,6 +33,11 @@ struct FlatScene {
   std::vector<float> spheres;            // centre and radius per geometry
   std::vector<std::int32_t> material_kinds;
   std::vector<float> material_parameters;
+  std::vector<std::int32_t> material_maps;
+  std::vector<TextureBinding> texture_bindings;
+  std::vector<FeatureMask>
+      material_features;           // that hits on each material need, mixes' parts aside
+  std::vector<Opacity> opacities;  // per material
   std::vector<std::int32_t> light_of_primitive;
   std::vector<std::int32_t> light_kinds;
   std::vector<float> light_rows;
@@ -33,7 +48,8 @@ struct FlatScene {
   std::vector<float> filter_x, filter_y;
 };
 
-FlatScene flatten(const SceneDescription& description);
+// `environment_radiance`: mean over the sphere where the environment is a map.
+FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance = {});
 
 // Of all arrays.
 std::size_t memory_bytes(const FlatScene& flat);
@@ -41,12 +57,22 @@ std::size_t memory_bytes(const FlatScene& flat);
 // Of every number in `flat`: scenes that differ anywhere have different fingerprints.
 std::uint64_t fingerprint(const FlatScene& flat);
 
-// Pointers into `flat`, which must outlive them. The Embree scene is left for the caller to set.
+// Pointers into `flat`, which must outlive them. The Embree scene, textures and the environment map
+// are left for the caller to set.
 SceneData view(const FlatScene& flat);
+
+// core/flatten_materials.cpp: fills the material tables, one row per material.
+// Throws Error where a mix contains itself or a material that does not exist.
+void flatten_materials(const SceneDescription& description, FlatScene& flat);
+
+// The binding of an input to its texture.
+TextureBinding binding_of(const ColorInput& input, int column);
+TextureBinding binding_of(const FloatInput& input, int column);
 
 // core/flatten_lights.cpp: fills the light tables from the emitting shapes and the environment.
 // Call once the geometry tables are filled.
-void flatten_lights(const SceneDescription& description, FlatScene& flat);
+void flatten_lights(const SceneDescription& description, glm::vec3 environment_radiance,
+                    FlatScene& flat);
 
 // core/flatten_camera.cpp
 void flatten_camera(const CameraDescription& camera, const FilmDescription& film, FlatScene& flat);

@@ -1,5 +1,6 @@
 #include "core/flatten.h"
 
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -55,14 +56,32 @@ void flatten_camera(const CameraDescription& camera, const FilmDescription& film
   CameraData& c = flat.camera;
   c.width = film.width;
   c.height = film.height;
-  const float shorter = std::tan(0.5f * glm::radians(camera.fov_degrees));
+  const bool orthographic = camera.projection == CameraDescription::Projection::Orthographic;
+  // Of the image's shorter side, on the plane z = 1.
+  const float shorter =
+      orthographic ? 0.5f * camera.extent : std::tan(0.5f * glm::radians(camera.fov_degrees));
   const float size = float(std::min(film.width, film.height));
   const glm::vec2 half(shorter * float(film.width) / size, shorter * float(film.height) / size);
+  const glm::vec2 shift = 2.0f * shorter * camera.shift;
   const glm::mat3 rotation(camera.camera_to_world);
-  c.origin = glm::vec3(camera.camera_to_world[3]);
+  const glm::vec3 position(camera.camera_to_world[3]);
   c.right = rotation * glm::vec3(2.0f * half.x / float(film.width), 0.0f, 0.0f);
   c.down = rotation * glm::vec3(0.0f, -2.0f * half.y / float(film.height), 0.0f);
-  c.corner = rotation * glm::vec3(-half.x, half.y, 1.0f);
+  const glm::vec2 corner(shift.x - half.x, shift.y + half.y);
+  if (orthographic) {
+    flat.features |= bit(Feature::Orthographic);
+    c.origin = glm::normalize(rotation * glm::vec3(0.0f, 0.0f, 1.0f));
+    c.corner = position + rotation * glm::vec3(corner, 0.0f);
+  } else {
+    c.origin = position;
+    c.corner = rotation * glm::vec3(corner, 1.0f);
+    c.focal_distance = camera.focal_distance;
+  }
+  if (camera.lens_radius > 0.0f && !orthographic) {
+    flat.features |= bit(Feature::Lens);
+    c.lens_x = rotation * glm::vec3(camera.lens_radius, 0.0f, 0.0f);
+    c.lens_y = rotation * glm::vec3(0.0f, camera.lens_radius, 0.0f);
+  }
 
   const PixelFilter& filter = film.filter;
   if (filter.kind == PixelFilter::Kind::Box && filter.radius == glm::vec2(0.5f)) return;

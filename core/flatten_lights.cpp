@@ -102,9 +102,9 @@ float scene_radius(const FlatScene& flat) {
   return hi.x < lo.x ? 1.0f : 0.5f * glm::length(hi - lo);
 }
 
-// Flux of the environment through the scene's bounding sphere.
-Light environment_light(glm::vec3 radiance, float radius) {
-  Light l{LightKind::Environment};
+// Flux of the environment through the scene's bounding sphere; radiance: of a map its mean.
+Light environment_light(LightKind kind, glm::vec3 radiance, float radius) {
+  Light l{kind};
   l.radiance = radiance;
   l.power = luminance(radiance) * 4.0f * glm::pi<float>() * glm::pi<float>() * radius * radius;
   return l;
@@ -134,6 +134,23 @@ Light delta_light(const DistantLight& d, float radius) {
   l.radiance = d.irradiance;
   l.power = luminance(d.irradiance) * glm::pi<float>() * radius * radius;
   return l;
+}
+
+// Textured emission is found by paths that hit it, never chosen; its lights keep their shape's
+// normal and side.
+void make_glow(const Emission& emission, std::vector<Light>& lights, FlatScene& flat) {
+  const auto binding = float(flat.texture_bindings.size());
+  flat.texture_bindings.push_back(binding_of(emission.radiance, 0));
+  for (Light& l : lights) {
+    if (l.kind == LightKind::Sphere) {
+      flat.features |= bit(Feature::SphereLights);
+    } else {
+      l.area = 0.0f;
+    }
+    l.kind = LightKind::Glow;
+    l.edge1.x = binding;
+    l.power = 0.0f;
+  }
 }
 
 // Probabilities in proportion to power (alike where no light has a usable one), in whole steps of
@@ -179,24 +196,32 @@ void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
 
 }  // namespace
 
-void flatten_lights(const SceneDescription& description, FlatScene& flat) {
+void flatten_lights(const SceneDescription& description, glm::vec3 environment_radiance,
+                    FlatScene& flat) {
   std::vector<Light> lights;
   for (std::size_t g = 0; g < description.shapes.size(); ++g) {
     const Shape& shape = description.shapes[g];
     if (!shape.emission || shape.emission->radiance.value == glm::vec3(0.0f)) continue;
     flat.geometry_rows[g * geometry_stride + 2] = std::int32_t(flat.light_of_primitive.size());
     const int first = int(lights.size());
+    std::vector<Light> added;
     if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-      const auto added = mesh_lights(*mesh, *shape.emission, first, flat.light_of_primitive);
-      lights.insert(lights.end(), added.begin(), added.end());
+      added = mesh_lights(*mesh, *shape.emission, first, flat.light_of_primitive);
     } else {
       flat.light_of_primitive.push_back(first);
-      lights.push_back(sphere_light(std::get<Sphere>(shape.geometry), *shape.emission));
+      added.push_back(sphere_light(std::get<Sphere>(shape.geometry), *shape.emission));
     }
+    if (shape.emission->radiance.texture >= 0) make_glow(*shape.emission, added, flat);
+    lights.insert(lights.end(), added.begin(), added.end());
   }
   if (description.environment && description.environment->radiance != glm::vec3(0.0f)) {
+    const bool constant = description.environment->mapping == Environment::Mapping::Constant;
     flat.environment_light = std::int32_t(lights.size());
-    lights.push_back(environment_light(description.environment->radiance, scene_radius(flat)));
+    lights.push_back(constant
+                         ? environment_light(LightKind::Environment,
+                                             description.environment->radiance, scene_radius(flat))
+                         : environment_light(LightKind::EnvironmentMap, environment_radiance,
+                                             scene_radius(flat)));
   }
   for (const LightSource& source : description.lights) {
     lights.push_back(

@@ -29,5 +29,18 @@ LOCKSTEP_INLINE Frame<V> frame_around(const Vec3<V>& n) {
           n};
 }
 
+// A frame around n whose x axis lies along t as far as it can; around n alone where it cannot.
+template <class V>
+LOCKSTEP_INLINE Frame<V> frame_along(const Vec3<V>& n, const Vec3<V>& t) {
+  const V scale = V(1.0f) / max(max_component(abs(t)), V(std::numeric_limits<float>::min()));
+  const Vec3<V> scaled = t * scale;
+  const Vec3<V> in_plane = fma(-dot(n, scaled), n, scaled);
+  const V length2 = dot(in_plane, in_plane);
+  const MaskOf<V> usable = length2 > V(1e-10f);
+  const Frame<V> any = frame_around(n);
+  const Vec3<V> x = in_plane * (V(1.0f) / sqrt(select(usable, length2, V(1.0f))));
+  return {select<V>(usable, x, any.x), select<V>(usable, cross(n, x), any.y), n};
+}
+
 }  // namespace LOCKSTEP_ISA_NAMESPACE
 }  // namespace lockstep

@@ -3,6 +3,8 @@
 
 #include "core/vec.h"
 
+#include <cmath>
+
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
@@ -34,6 +36,23 @@ LOCKSTEP_INLINE V fresnel_conductor(V cos_i, V eta, V k) {
   const V t4 = t2 * sin2;
   const V parallel = perpendicular * (t3 - t4) / (t3 + t4);
   return V(0.5f) * (parallel + perpendicular);
+}
+
+// Of diffuse light that meets a dielectric's surface from inside: 1 - (1 - r) / eta^2, with r the
+// cosine-weighted mean of Fresnel's formula outside (Egan and Hilgeman 1973). Slow: for tables.
+// Where what it crosses on its way there and back is `thickness` mean free paths thick, only what
+// arrives counts.
+inline float inner_reflectance(float eta, float thickness = 0.0f) {
+  constexpr int steps = 512;
+  double outside = 0.0, lost = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const float cos_i = (float(i) + 0.5f) / steps;
+    const double weight = 2.0 * double(cos_i) / steps;
+    outside += weight * double(fresnel_dielectric(cos_i, eta));
+    const double dimmed = -std::expm1(-2.0 * double(thickness) / double(cos_i));
+    lost += weight * dimmed * double(fresnel_dielectric(cos_i, 1.0f / eta));
+  }
+  return float(1.0 - (1.0 - outside) / (double(eta) * double(eta)) - lost);
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

@@ -1,5 +1,6 @@
 // The module of image formats: everything that OpenImageIO reads, and what it encodes in memory.
 #include "core/image_formats.h"
+
 #include "core/srgb.h"
 
 #include <OpenImageIO/filesystem.h>

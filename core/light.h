@@ -3,6 +3,7 @@
 // the light. Directions point from the lit point to the light and are unit vectors.
 #pragma once
 
+#include "core/environment_map_lookup.h"
 #include "core/frame.h"
 #include "core/light_description.h"
 #include "core/scene_data.h"
@@ -18,7 +19,8 @@ struct LightSample {
   V distance;  // infinite for the environment
   Vec3<V> radiance;
   V pdf;  // 0: nothing arrives from there; the light's probability where it is a single direction
-  MaskOf<V> delta = MaskOf<V>(false);  // a single direction, which no other technique finds
+  MaskOf<V> delta = MaskOf<V>(false);  // a single direction, which no other technique finds: only
+                                       // set where the scene has such lights
 };
 
 template <class V>
@@ -127,13 +129,35 @@ LOCKSTEP_INLINE LightSample<V> sample_sphere_light(const LightRow<V>& light, con
           select(lit, pdf, V(0.0f))};
 }
 
-// The constant environment, seen by a surface: cosine-weighted around its shading normal.
-template <class V>
+// Density with which sample_environment gives a direction at this angle to the shading normal.
+template <bool both_sides, class V>
+LOCKSTEP_INLINE V environment_pdf(V cos_theta) {
+  if constexpr (both_sides) return V(0.5f) * cosine_hemisphere_pdf(abs(cos_theta));
+  return cosine_hemisphere_pdf(cos_theta);
+}
+
+// The constant environment, seen by a surface: cosine-weighted around its shading normal, or around
+// either side of it.
+template <bool both_sides, class V>
 LOCKSTEP_INLINE LightSample<V> sample_environment(const LightRow<V>& light, const Frame<V>& frame,
                                                   Vec2<V> u) {
-  const Vec3<V> local = cosine_hemisphere(u);
+  MaskOf<V> below(false);
+  if constexpr (both_sides) {
+    below = u.x >= V(0.5f);
+    u.x = fma(V(2.0f), u.x, select(below, V(-1.0f), V(0.0f)));
+  }
+  Vec3<V> local = cosine_hemisphere(u);
+  const V pdf = environment_pdf<both_sides>(local.z);
+  local.z = select(below, -local.z, local.z);
   return {frame.to_world(local), V(std::numeric_limits<float>::infinity()), light.radiance,
-          light.probability * cosine_hemisphere_pdf(local.z)};
+          light.probability * pdf};
+}
+
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_map_light(const EnvironmentMapData& map,
+                                                const LightRow<V>& light, Vec2<V> u) {
+  const MapSample<V> s = sample_environment_map(map, u);
+  return {s.wi, V(std::numeric_limits<float>::infinity()), s.radiance, light.probability * s.pdf};
 }
 
 // Share of its axis' intensity that a spot light sends at an angle of this cosine to the axis.
@@ -170,19 +194,19 @@ LOCKSTEP_INLINE LightSample<V> sample_delta_light(const LightRow<V>& light, Mask
   if (any(spot)) scale = select(spot, scale * spot_falloff(light, -dot(light.normal, wi)), scale);
   const MaskOf<V> lit = (scale > V(0.0f)) & is_finite(scale);
   return {wi, select(distant, V(std::numeric_limits<float>::infinity()), distance),
-          light.radiance * scale, select(lit, light.probability, V(0.0f)), MaskOf<V>(true)};
+          light.radiance * scale, select(lit, light.probability, V(0.0f))};
 }
 
-// A direction from p, with shading frame `frame`, to the lanes' lights.
-template <class V, FeatureMask F = all_features>
+// A direction from p, with shading frame `frame`, to the lanes' lights. `both_sides`: light from
+// below the surface counts too.
+template <class V, FeatureMask F = all_features, bool both_sides = false>
 LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> index,
                                             const Vec3<V>& p, const Frame<V>& frame, Vec2<V> u) {
   const LightRow<V> light = load_light(scene.lights, index);
   LightSample<V> s{Vec3<V>(V(0.0f)), V(0.0f), Vec3<V>(V(0.0f)), V(0.0f)};
   const auto merge = [&](MaskOf<V> m, const LightSample<V>& other) LOCKSTEP_LAMBDA {
     s = {select<V>(m, other.wi, s.wi), select(m, other.distance, s.distance),
-         select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf),
-         MaskOf<V>((m & other.delta) | s.delta)};
+         select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf), s.delta};
   };
   const auto of_kind = [&](Feature feature, LightKind kind) LOCKSTEP_LAMBDA {
     return needs<F>(scene, feature) ? light.is(kind) : MaskOf<V>(false);
@@ -193,12 +217,16 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
   const MaskOf<V> environment = of_kind(Feature::Environment, LightKind::Environment);
   if (any(flat)) merge(flat, sample_flat_light(light, triangle, p, u));
   if (any(sphere)) merge(sphere, sample_sphere_light(light, p, u));
-  if (any(environment)) merge(environment, sample_environment(light, frame, u));
-  if (has_delta_lights<F>(scene)) {
+  if (any(environment)) merge(environment, sample_environment<both_sides>(light, frame, u));
+  if (needs<F>(scene, Feature::EnvironmentMap)) {
+    const MaskOf<V> map = light.is(LightKind::EnvironmentMap);
+    if (any(map)) merge(map, sample_map_light(scene.environment_map, light, u));
+  }
+  if (needs_any<F>(scene, delta_light_features)) {
     const MaskOf<V> spot = of_kind(Feature::SpotLights, LightKind::Spot);
     const MaskOf<V> distant = of_kind(Feature::DistantLights, LightKind::Distant);
-    const MaskOf<V> delta = spot | distant | of_kind(Feature::PointLights, LightKind::Point);
-    if (any(delta)) merge(delta, sample_delta_light(light, spot, distant, p));
+    s.delta = spot | distant | of_kind(Feature::PointLights, LightKind::Point);
+    if (any(s.delta)) merge(s.delta, sample_delta_light(light, spot, distant, p));
   }
   return s;
 }
@@ -206,7 +234,9 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
 template <class V>
 struct Emitted {
   Vec3<V> radiance;  // 0 from the side that does not emit
-  V pdf;             // with which sample_light gives this direction
+  V pdf;             // with which sample_light gives this direction; below infinity
+  MaskOf<V> glows;   // radiance is still to be multiplied by the texture that
+  IntOf<V> binding;  // this binding names: only where the scene has textured lights
 };
 
 // What a ray from p along wi receives from the area light it hits at `distance`.
@@ -214,7 +244,11 @@ template <class V, FeatureMask F = all_features>
 LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, const Vec3<V>& p,
                                      const Vec3<V>& wi, V distance) {
   const LightRow<V> light = load_light(scene.lights, index);
-  const MaskOf<V> sphere = light.is(LightKind::Sphere);
+  MaskOf<V> sphere = light.is(LightKind::Sphere), glows(false);
+  if (needs<F>(scene, Feature::TexturedLights)) {
+    glows = light.is(LightKind::Glow);
+    sphere = sphere | (glows & (light.area > V(0.0f)));
+  }
   V cos_light = -dot(light.normal, wi);
   V pdf = solid_angle_pdf(distance, max(abs(cos_light), V(1e-20f)), light.area);
   if (needs<F>(scene, Feature::SphereLights) && any(sphere)) {
@@ -228,7 +262,13 @@ LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, con
     cos_light = select(sphere, -dot(n, wi), cos_light);
   }
   const Vec3<V> none(V(0.0f));
-  return {select<V>(emits(light.side, cos_light), light.radiance, none), pdf * light.probability};
+  Emitted<V> e{select<V>(emits(light.side, cos_light), light.radiance, none),
+               min(pdf * light.probability, V(1e38f)), glows, IntOf<V>(0)};
+  if (needs<F>(scene, Feature::TexturedLights)) {
+    e.pdf = select(glows, V(0.0f), e.pdf);
+    e.binding = to_int(select(glows, light.edge1.x, V(0.0f)));
+  }
+  return e;
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

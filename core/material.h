@@ -43,6 +43,10 @@ struct CoatedMaterial {
   float eta = 1.5f;
   bool layered = true;
   FloatInput alpha_scale{};
+  // Of layered coats: what crosses one under an angle is dimmed by exp(-thickness / cos), and of
+  // light between base and coat this many reflections by the base count; 0: all.
+  float thickness = 0.0f;
+  int reflections = 0;
 };
 
 // A boundary between two transparent media, or a thin sheet of one.

@@ -9,6 +9,9 @@
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
+// Below this roughness a lobe is taken as perfectly smooth, or kept at it where it may not be.
+inline constexpr float smoothest_alpha = 1e-3f;
+
 template <class V>
 struct Ggx {
   Vec2<V> alpha;

@@ -6,7 +6,6 @@
 #include "core/mitsuba/reader.h"
 #include "core/obj.h"
 #include "core/ply.h"
-#include "core/substitutes.h"
 
 #include <algorithm>
 #include <array>
@@ -81,15 +80,32 @@ SceneDescription read_ply_scene(const std::string& path) {
   return scene;
 }
 
+const BuiltinScene* find_builtin(const std::string& name) {
+  const auto& scenes = builtin_scenes();
+  const auto at = std::find_if(scenes.begin(), scenes.end(),
+                               [&](const BuiltinScene& scene) { return scene.name == name; });
+  return at == scenes.end() ? nullptr : &*at;
+}
+
+void check_file(const std::string& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) {
+    throw Error(path + ": no such scene file; the built-in scenes are " + builtin_names());
+  }
+  if (fs::is_directory(path, ignored)) {
+    throw Error(path + ": is a directory; name the scene file in it");
+  }
+}
+
 // By content: names may lie. Empty and comment-only files are left to the reader their name asks
 // for.
-SceneDescription read_file(const std::string& path) {
+SceneFormat file_format(const std::string& path) {
   const std::string word = first_word(path), extension = fs::path(path).extension().string();
-  if (word.starts_with("glTF") || word.starts_with('{')) return read_gltf(path);
-  if (word.starts_with('<') || word.starts_with("\xef\xbb\xbf<")) return read_mitsuba(path);
-  if (word == "ply") return read_ply_scene(path);
-  if (extension == ".pbrt" || is_pbrt(word)) return read_pbrt(path);
-  if (extension == ".obj" || is_obj(word)) return read_obj_scene(path);
+  if (word.starts_with("glTF") || word.starts_with('{')) return SceneFormat::Gltf;
+  if (word.starts_with('<') || word.starts_with("\xef\xbb\xbf<")) return SceneFormat::Mitsuba;
+  if (word == "ply") return SceneFormat::Ply;
+  if (extension == ".pbrt" || is_pbrt(word)) return SceneFormat::Pbrt;
+  if (extension == ".obj" || is_obj(word)) return SceneFormat::Obj;
   throw Error(path +
               ": unknown scene format; pbrt (version 2 to 4), Mitsuba XML, glTF 2.0, OBJ and PLY "
               "files are understood");
@@ -97,20 +113,34 @@ SceneDescription read_file(const std::string& path) {
 
 }  // namespace
 
+std::string_view format_name(SceneFormat format) {
+  constexpr std::string_view names[] = {"built in", "pbrt", "Mitsuba XML",
+                                        "glTF 2.0", "OBJ",  "PLY"};
+  return names[int(format)];
+}
+
+SceneFormat scene_format(const std::string& name) {
+  if (find_builtin(name)) return SceneFormat::Builtin;
+  check_file(name);
+  return file_format(name);
+}
+
 SceneDescription read_scene(const std::string& name) {
-  for (const BuiltinScene& scene : builtin_scenes()) {
-    if (scene.name == name) return scene.make();
+  switch (scene_format(name)) {
+    case SceneFormat::Builtin:
+      return find_builtin(name)->make();
+    case SceneFormat::Pbrt:
+      return read_pbrt(name);
+    case SceneFormat::Mitsuba:
+      return read_mitsuba(name);
+    case SceneFormat::Gltf:
+      return read_gltf(name);
+    case SceneFormat::Obj:
+      return read_obj_scene(name);
+    case SceneFormat::Ply:
+      break;
   }
-  std::error_code ignored;
-  if (!fs::exists(name, ignored)) {
-    throw Error(name + ": no such scene file; the built-in scenes are " + builtin_names());
-  }
-  if (fs::is_directory(name, ignored)) {
-    throw Error(name + ": is a directory; name the scene file in it");
-  }
-  SceneDescription scene = read_file(name);
-  substitute_unsupported(scene);
-  return scene;
+  return read_ply_scene(name);
 }
 
 }  // namespace lockstep

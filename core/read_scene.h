@@ -9,9 +9,17 @@
 
 namespace lockstep {
 
-// Reads `name`: a built-in scene, or a path to a file of pbrt (v2 to v4), Mitsuba (0.4 to 3), glTF
-// 2.0, OBJ or PLY, told apart by content. What kernels do not render yet is replaced, with warnings
-// (core/substitutes.h).
+enum class SceneFormat { Builtin, Pbrt, Mitsuba, Gltf, Obj, Ply };
+
+// As people call it: "built in", "pbrt", "Mitsuba XML", "glTF 2.0", "OBJ", "PLY".
+std::string_view format_name(SceneFormat format);
+
+// What `name` is: a built-in scene, or a path to a file of pbrt (v2 to v4), Mitsuba (0.4 to 3),
+// glTF 2.0, OBJ or PLY, told apart by content. Throws Error where there is no such file, and for
+// files of other formats.
+SceneFormat scene_format(const std::string& name);
+
+// Reads the scene as its author wrote it.
 // Throws Error ("file:line: what is wrong") on missing or malformed input.
 SceneDescription read_scene(const std::string& name);
 

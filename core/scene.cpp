@@ -1,11 +1,14 @@
 #include "core/scene.h"
 
+#include "core/environment_map.h"
 #include "core/error.h"
+#include "core/expand_shapes.h"
 #include "core/flatten.h"
-
-#include <embree3/rtcore.h>
+#include "core/opacity.h"
+#include "core/texture_store.h"
 
 #include <atomic>
+#include <optional>
 #include <utility>
 
 namespace lockstep {
@@ -34,8 +37,13 @@ void check(RTCDevice device) {
   }
 }
 
+bool has_environment_map(const SceneDescription& description) {
+  return description.environment &&
+         description.environment->mapping != Environment::Mapping::Constant;
+}
+
 // One Embree geometry per shape, over the shared vertex and index arrays.
-void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id) {
+void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id, Holes& holes) {
   const FlatGeometry& g = flat.geometries[id];
   RTCGeometry geometry = nullptr;
   if (g.is_sphere) {
@@ -51,6 +59,8 @@ void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id
                                flat.triangles.data(), size_t(g.first_triangle) * 3 * sizeof(int),
                                3 * sizeof(int), size_t(g.triangle_count));
   }
+  const std::int32_t material = flat.geometry_rows[id * geometry_stride + 1];
+  if (flat.opacities[std::size_t(material)].has_holes()) set_holes(geometry, holes);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
@@ -75,7 +85,11 @@ struct EmbreeMemory {
 struct Scene::Storage {
   EmbreeMemory embree_memory;    // outlives the device
   SceneDescription description;  // without its geometry, which `flat` holds
+  TextureStore textures;
+  TextureTable texture_table;
+  std::optional<EnvironmentMap> environment_map;
   FlatScene flat;
+  std::vector<Holes> holes;  // per geometry
   DeviceHandle device;
   SceneHandle scene;
   SceneData data;
@@ -88,8 +102,17 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   if (description.shapes.empty() && description.lights.empty() && !description.environment) {
     throw Error(description.name + ": nothing to render: no shape and no light");
   }
-  s.flat = flatten(description);
-  s.fingerprint = lockstep::fingerprint(s.flat);
+  expand_shapes(description);
+  s.textures = TextureStore(description.textures, false);
+  s.texture_table = s.textures.table();
+  glm::vec3 environment_radiance(0.0f);
+  if (has_environment_map(description)) {
+    s.environment_map.emplace(*description.environment);
+    environment_radiance = s.environment_map->mean_radiance();
+  }
+  s.flat = flatten(description, environment_radiance);
+  s.fingerprint = lockstep::fingerprint(s.flat) ^ s.textures.fingerprint() * 3u;
+  if (s.environment_map) s.fingerprint ^= s.environment_map->fingerprint() * 5u;
   description.shapes.clear();
   description.objects.clear();
   s.description = std::move(description);
@@ -102,14 +125,18 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   // the last bit.
   rtcSetSceneFlags(s.scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(s.scene.get(), RTC_BUILD_QUALITY_HIGH);
+  s.holes.resize(s.flat.geometries.size());
   for (unsigned id = 0; id < s.flat.geometries.size(); ++id) {
-    attach(s.device.get(), s.scene.get(), s.flat, id);
+    s.holes[id] = {&s.flat, &s.texture_table, id};
+    attach(s.device.get(), s.scene.get(), s.flat, id, s.holes[id]);
   }
   rtcCommitScene(s.scene.get());
   check(s.device.get());
 
   s.data = view(s.flat);
   s.data.embree_scene = s.scene.get();
+  s.data.textures = s.texture_table;
+  if (s.environment_map) s.data.environment_map = s.environment_map->view();
 }
 
 Scene::~Scene() = default;
@@ -120,7 +147,9 @@ const SceneData& Scene::data() const { return storage_->data; }
 FeatureMask Scene::features() const { return storage_->data.features; }
 std::size_t Scene::triangle_count() const { return (storage_->flat.triangles.size() - 4) / 3; }
 SceneMemory Scene::memory() const {
-  return {memory_bytes(storage_->flat), std::size_t(storage_->embree_memory.bytes),
+  std::size_t images = storage_->textures.memory_bytes();
+  if (storage_->environment_map) images += storage_->environment_map->memory_bytes();
+  return {memory_bytes(storage_->flat), images, std::size_t(storage_->embree_memory.bytes),
           std::size_t(storage_->embree_memory.peak)};
 }
 std::uint64_t Scene::fingerprint() const { return storage_->fingerprint; }

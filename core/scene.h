@@ -14,6 +14,7 @@ namespace lockstep {
 // Bytes that a scene takes.
 struct SceneMemory {
   std::size_t geometry = 0;     // the arrays that Embree and the kernels read
+  std::size_t textures = 0;     // images of textures and of the environment, with its distribution
   std::size_t embree = 0;       // Embree's structures
   std::size_t embree_peak = 0;  // and what it took at most while building them
 };

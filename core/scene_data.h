@@ -3,7 +3,9 @@
 // every array has three values more than it needs.
 #pragma once
 
+#include "core/environment_map_data.h"
 #include "core/features.h"
+#include "core/texture_data.h"
 
 #include <glm/vec3.hpp>
 
@@ -11,20 +13,57 @@
 
 namespace lockstep {
 
-// Rows of MaterialTable::parameters, `material_stride` floats each, by kind:
-//   diffuse    0 reflectance
-//   conductor  0 eta, 3 k, 6 alpha x, 7 alpha y
-//   coated     0 diffuse, 3 specular, 6 alpha, 7 eta, 8 layered (0 or 1), 9 inner reflectance
-enum class MaterialKind : std::int32_t { Diffuse, Conductor, Coated };
-inline constexpr int material_kinds = 3;
-inline constexpr int material_stride = 12;
+// Rows of MaterialTable::parameters, `material_stride` floats each, by kind; core/bsdf/ says more:
+//   Diffuse              0 reflectance
+//   Conductor            0 eta, 3 k, 6 alpha x, 7 alpha y, 8 specular
+//   Coated               0 diffuse, 3 specular, 6 alpha, 7 eta, 8 layered, 9 inner reflectance,
+//                        10 thickness, 11 reflections
+//   RoughDiffuse         0 reflectance, 3 sigma
+//   DiffuseTransmission  0 reflectance, 3 transmittance
+//   Dielectric           0 reflectance, 3 transmittance, 6 alpha x, 7 alpha y, 8 eta, 9 thin,
+//                        10 absorption
+//   Principled           0 base colour, 3 metallic, 4 alpha, 5 eta, 6 specular, 7 transmission,
+//                        8 coat, 9 coat alpha, 10 thin
+//   Mix                  0 first material, 1 second, 2 share of the second
+// Mixes never reach shading: each path goes on with one of their parts.
+enum class MaterialKind : std::int32_t {
+  Diffuse,
+  Conductor,
+  Coated,
+  RoughDiffuse,
+  DiffuseTransmission,
+  Dielectric,
+  Principled,
+  Mix
+};
+inline constexpr int material_kinds = 8;
+inline constexpr int material_stride = 16;
 
 constexpr Feature material_feature(MaterialKind kind) {
   return Feature(unsigned(Feature::Diffuse) + unsigned(kind));
 }
 
+// Columns [column, column + columns) of a row that come from a texture: `scale` times its colour,
+// or times a number taken from it.
+struct TextureBinding {
+  std::int32_t texture = -1;
+  std::int32_t column = 0, columns = 3;
+  bool is_color = true;
+  std::int32_t channel = -1;  // as FloatInput has them
+  float power = 1.0f;
+  glm::vec3 scale{1.0f};
+};
+
+// Rows of MaterialTable::maps, `map_stride` integers each: 0 first binding, 1 their number,
+// 2 binding of the normal map (scale.x: of the map's x and y), 3 of the bump map; -1: none.
+inline constexpr int map_stride = 4;
+
 struct MaterialTable {
   const float* parameters = nullptr;
+  const std::int32_t* kinds = nullptr;  // MaterialKind
+  const std::int32_t* maps = nullptr;
+  const TextureBinding* bindings = nullptr;
+  const float* ggx_albedo = nullptr;  // core/ggx_albedo.h; none: single scattering only
 };
 
 // Rows of LightTable::rows, `light_stride` floats each:
@@ -34,16 +73,20 @@ struct MaterialTable {
 //   12 unit normal, 15 LightKind as a number
 //   16 radiance
 // Point and spot lights: 0 position, 16 intensity; spot lights: 4 cosines of the inner and outer
-// cone and SpotLight::Falloff as a number, 8 those cones' angles, 12 axis. Distant lights: 12 direction in which light
-// travels, 16 irradiance.
+// cone and SpotLight::Falloff as a number, 8 those cones' angles, 12 axis. Distant lights:
+// 12 direction in which light travels, 16 irradiance. Environment maps have no more than their
+// row's number and probability. Glowing surfaces are never chosen, only found: 0 the binding of
+// their radiance, a TextureBinding.
 enum class LightKind : std::int32_t {
   Parallelogram,
   Triangle,
   Sphere,
   Environment,
+  EnvironmentMap,
   Point,
   Spot,
-  Distant
+  Distant,
+  Glow
 };
 inline constexpr int light_stride = 20;
 
@@ -64,7 +107,12 @@ struct LightTable {
 //   3 GeometryFlag bits, and the MaterialKind above them
 inline constexpr int geometry_stride = 4;
 
-enum GeometryFlag : std::int32_t { geometry_is_sphere = 1, geometry_is_smooth = 2 };
+enum GeometryFlag : std::int32_t {
+  geometry_is_sphere = 1,
+  geometry_is_smooth = 2,
+  geometry_has_uvs = 4,       // else each triangle has (0, 0), (1, 0) and (1, 1)
+  geometry_is_one_sided = 8,  // its back absorbs
+};
 inline constexpr int geometry_kind_shift = 8;
 
 struct GeometryTable {
@@ -76,10 +124,13 @@ struct GeometryTable {
 // u = i / filter_cells, to be interpolated linearly. None for a box over the pixel.
 inline constexpr int filter_cells = 256;
 
+// Orthographic: rays start at `corner` plus steps and go along `origin`, a unit vector.
 struct CameraData {
   glm::vec3 origin{0.0f};
   glm::vec3 right{0.0f}, down{0.0f};  // world-space step per pixel
   glm::vec3 corner{0.0f};             // direction (not unit) of the top left corner of pixel (0, 0)
+  glm::vec3 lens_x{0.0f}, lens_y{0.0f};  // half axes of the lens
+  float focal_distance = 1.0f;           // where it is sharp, in lengths of `corner`'s direction
   int width = 0, height = 0;
   const float* filter_x = nullptr;
   const float* filter_y = nullptr;
@@ -90,11 +141,14 @@ struct SceneData {
   const std::int32_t* triangles = nullptr;  // three vertex indices each
   const float* positions = nullptr;         // per vertex
   const float* normals = nullptr;           // per vertex
+  const float* uvs = nullptr;               // two per vertex
   const std::int32_t* light_of_primitive = nullptr;
   const std::uint8_t* coincident = nullptr;  // per triangle, 1: overlaps another; or no array
   GeometryTable geometry;
   MaterialTable materials;
+  TextureTable textures;
   LightTable lights;
+  EnvironmentMapData environment_map;
   CameraData camera;
   std::int32_t environment = -1;  // its index in lights; -1: none
   FeatureMask features = all_features;
@@ -106,23 +160,24 @@ constexpr bool needs(const SceneData& scene, Feature feature) {
   return (F & bit(feature)) != 0u && (scene.features & bit(feature)) != 0u;
 }
 
-inline constexpr FeatureMask area_light_features =
-    feature_set(Feature::QuadLights, Feature::TriangleLights, Feature::SphereLights);
+inline constexpr FeatureMask area_light_features = feature_set(
+    Feature::QuadLights, Feature::TriangleLights, Feature::SphereLights, Feature::TexturedLights);
 inline constexpr FeatureMask material_features =
-    feature_set(Feature::Diffuse, Feature::Conductor, Feature::Coated);
+    feature_set(Feature::Diffuse, Feature::Conductor, Feature::Coated, Feature::RoughDiffuse,
+                Feature::DiffuseTransmission, Feature::Dielectric, Feature::Principled);
 
 // Lights that no ray can hit.
 inline constexpr FeatureMask delta_light_features =
     feature_set(Feature::PointLights, Feature::SpotLights, Feature::DistantLights);
 
-template <FeatureMask F>
-constexpr bool has_delta_lights(const SceneData& scene) {
-  return (F & scene.features & delta_light_features) != 0u;
-}
+// What makes a hit's texture coordinates worth knowing.
+inline constexpr FeatureMask uv_features =
+    feature_set(Feature::Textures, Feature::Tangents, Feature::SurfaceMaps);
 
+// Any of the features in `set`.
 template <FeatureMask F>
-constexpr bool has_area_lights(const SceneData& scene) {
-  return (F & scene.features & area_light_features) != 0u;
+constexpr bool needs_any(const SceneData& scene, FeatureMask set) {
+  return (F & scene.features & set) != 0u;
 }
 
 }  // namespace lockstep

@@ -99,8 +99,12 @@ LOCKSTEP_INLINE Lanes<T, W> select(LaneMask<W> m, Lanes<T, W> a, Lanes<T, W> b) 
                                   m, a, b);
 }
 
-// Arithmetic ----------------------------------------------------------------------------------
+template <int W>
+LOCKSTEP_INLINE LaneMask<W> select(LaneMask<W> m, LaneMask<W> a, LaneMask<W> b) {
+  return (m & a) | ((!m) & b);
+}
 
+// Arithmetic ----------------------------------------------------------------------------------
 // min and max give the second operand where either is NaN, as SSE does.
 LOCKSTEP_INLINE float min(float a, float b) { return a < b ? a : b; }
 LOCKSTEP_INLINE float max(float a, float b) { return a > b ? a : b; }

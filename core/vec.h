@@ -75,5 +75,12 @@ LOCKSTEP_INLINE auto gather_vec3(const T* base, I index, int stride) {
   return Vec3<std::remove_const_t<decltype(row.x)>>(row.x, row.y, row.z);
 }
 
+// Normalises vectors whose squared length would leave float's range.
+template <class V>
+LOCKSTEP_INLINE Vec3<V> normalize_any(const Vec3<V>& a) {
+  const V largest = max(max_component(abs(a)), V(std::numeric_limits<float>::min()));
+  return normalize(a * (V(1.0f) / largest));
+}
+
 }  // namespace LOCKSTEP_ISA_NAMESPACE
 }  // namespace lockstep

@@ -1,7 +1,6 @@
 #include "experiments/compare.h"
 
 #include "core/error.h"
-#include "core/read_scene.h"
 #include "experiments/errors_csv.h"
 #include "experiments/metrics.h"
 #include "experiments/output_file.h"
@@ -57,7 +56,7 @@ std::string unique_label(const std::string& scene, std::set<std::string>& taken)
 }
 
 SceneDescription read_for(const CompareSettings& settings, const std::string& scene) {
-  SceneDescription description = read_scene(scene);
+  SceneDescription description = read_scene(scene, settings.overrides);
   if (settings.resolution) {
     description.film.width = settings.resolution->x;
     description.film.height = settings.resolution->y;
@@ -83,7 +82,7 @@ SceneComparison describe(const Scene& scene, const CompareSettings& settings,
 
 // A mistake in any scene is found before files are touched and hours are spent on the others.
 void check_scenes(const CompareSettings& settings) {
-  for (const std::string& scene : settings.scenes) read_scene(scene);
+  for (const std::string& scene : settings.scenes) read_scene(scene, settings.overrides);
 }
 
 std::string in_directory(const CompareSettings& settings, const std::string& file) {
@@ -95,8 +94,8 @@ void keep_images(Phase& phase, int sampler_index, const RenderResult& render) {
   const std::string stem = fmt::format("{}-{}-{}spp", phase.result.label,
                                        file_name_safe(to_string(sampler)), render.stats.spp);
   RunImages images{sampler_index, render.stats.spp, stem + ".exr", stem + ".png", ""};
-  const Metadata metadata =
-      render_metadata(phase.result.scene, sampler, phase.render_settings, render);
+  Metadata metadata = render_metadata(phase.result.scene, sampler, phase.render_settings, render);
+  metadata.merge(override_metadata(phase.settings.overrides));
   write_image(in_directory(phase.settings, images.exr), render.image, metadata);
   write_image(in_directory(phase.settings, images.png),
               exposed(render.image, phase.result.exposure));

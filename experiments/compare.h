@@ -8,6 +8,7 @@
 #include "core/image.h"
 #include "core/scene_description.h"
 #include "experiments/error_spectrum.h"
+#include "experiments/scene_overrides.h"
 #include "packets/render.h"
 #include "samplers/sampler_spec.h"
 
@@ -28,6 +29,7 @@ struct CompareSettings {
   int reference_spp = 0;       // 0: 1024 or 16 times the longest rung, whichever is more
   std::optional<int> depth;    // empty: the scene's
   std::optional<glm::ivec2> resolution;
+  SceneOverrides overrides;  // of every scene
   RenderSettings render;     // threads, width, lanes, instruction set, roulette depth
   double max_seconds = 0.0;  // if positive: begin no further seed past this wall time
   std::string directory;

@@ -32,6 +32,7 @@ void run_compare(const CompareOptions& options) {
   if (!options.renderer.resolution.empty()) {
     settings.resolution = parse_resolution(options.renderer.resolution);
   }
+  settings.overrides = scene_overrides(options.renderer);
   settings.render = render_settings(options.renderer);
   settings.directory = options.directory;
   run_comparison(settings, options.quiet);

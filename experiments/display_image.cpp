@@ -1,4 +1,5 @@
 #include "experiments/display_image.h"
+
 #include "core/srgb.h"
 
 #include <tbb/parallel_for.h>

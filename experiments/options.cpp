@@ -1,7 +1,6 @@
 #include "experiments/options.h"
 
 #include "core/error.h"
-#include "core/read_scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -33,6 +32,23 @@ CLI::Validator one_of(const std::vector<std::string>& choices) {
       "");
 }
 
+void add_scene_options(CLI::App& command, RendererOptions& options) {
+  const auto add = [&](const char* flag, auto& value, const char* type, const char* description) {
+    return command.add_option(flag, value, description)->type_name(type)->group("Scene");
+  };
+  add("--camera", options.camera, "SPEC",
+      "In place of parts of the scene's camera, any of origin=X,Y,Z:\n"
+      "target=X,Y,Z:up=X,Y,Z:fov=DEGREES:lens=RADIUS:focus=DISTANCE in one\n"
+      "word, or a JSON file with these keys. The fov is along the shorter\n"
+      "side. 'lockstep info SCENE' shows the scene's own");
+  add("--environment", options.environment, "SPEC",
+      "In place of the scene's environment: a latitude-longitude image with\n"
+      "y up (.exr, .hdr), a constant radiance R,G,B, or none");
+  add("--environment-scale", options.environment_scale, "X",
+      "Times the environment's radiance, the scene's own or the one given")
+      ->check(number_between(0, 1e9));
+}
+
 }  // namespace
 
 CLI::Validator number_between(double low, double high) {
@@ -48,6 +64,7 @@ CLI::Validator number_between(double low, double high) {
 }
 
 void add_renderer_options(CLI::App& command, RendererOptions& options) {
+  add_scene_options(command, options);
   const auto add = [&](const char* flag, auto& value, const char* type, const char* description) {
     return command.add_option(flag, value, description)->type_name(type)->group("Renderer");
   };
@@ -101,8 +118,16 @@ RenderSettings render_settings(const RendererOptions& options) {
   return settings;
 }
 
-SceneDescription read_described(const std::string& scene, const RendererOptions& options) {
-  SceneDescription description = read_scene(scene);
+SceneOverrides scene_overrides(const RendererOptions& options) {
+  SceneOverrides overrides;
+  if (!options.camera.empty()) overrides.camera = parse_camera(options.camera);
+  overrides.environment = parse_environment(options.environment, options.environment_scale);
+  return overrides;
+}
+
+SceneDescription read_described(const std::string& scene, const RendererOptions& options,
+                                const SceneOverrides& overrides) {
+  SceneDescription description = read_scene(scene, overrides);
   for (const std::string& warning : description.warnings) {
     fmt::print(stderr, "lockstep: warning: {}\n", warning);
   }

@@ -1,6 +1,7 @@
 // Command-line options that several subcommands share.
 #pragma once
 
+#include "experiments/scene_overrides.h"
 #include "packets/render.h"
 
 #include <CLI/CLI.hpp>
@@ -24,6 +25,8 @@ struct RendererOptions {
   std::string traversal = "auto";
   bool general = false;
   std::string isa = "auto";
+  std::string camera, environment;
+  std::optional<float> environment_scale;
 };
 
 // Accepts numbers from `low` to `high`; help shows the option's own words alone.
@@ -34,9 +37,13 @@ void add_renderer_options(CLI::App& command, RendererOptions& options);
 // Threads, width, lanes, instruction set and roulette depth. Throws UsageError, Error.
 RenderSettings render_settings(const RendererOptions& options);
 
-// Reads the scene, prints what of it was not understood, and sets the resolution if one was given.
-// Throws UsageError, Error.
-SceneDescription read_described(const std::string& scene, const RendererOptions& options);
+// Camera and environment in place of the scene's. Throws UsageError, Error.
+SceneOverrides scene_overrides(const RendererOptions& options);
+
+// Reads the scene, prints what of it was not understood, and makes the changes that the options ask
+// for. Throws UsageError, Error.
+SceneDescription read_described(const std::string& scene, const RendererOptions& options,
+                                const SceneOverrides& overrides);
 
 // "0,0.5,1": numbers from 0 to 1, ascending after sorting; duplicates go. Throws UsageError.
 std::vector<float> parse_weights(std::string_view text);

@@ -1,4 +1,5 @@
 #include "experiments/preview.h"
+
 #include "core/srgb.h"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // lockstep profile: packet coherence against weight.
 #include "core/error.h"
-#include "core/read_scene.h"
 #include "experiments/commands.h"
 #include "experiments/options.h"
 #include "experiments/output_file.h"
@@ -61,9 +60,10 @@ void run_profile_command(const ProfileOptions& options) {
   RendererOptions renderer = options.renderer;
   renderer.lanes = "auto";
   settings.render = render_settings(renderer);
+  const SceneOverrides overrides = scene_overrides(options.renderer);
   make_output_directory(options.directory);
 
-  SceneDescription description = read_described(options.scene, options.renderer);
+  SceneDescription description = read_described(options.scene, options.renderer, overrides);
   settings.render.depth = options.renderer.depth.value_or(description.defaults.depth);
   settings.render.spp = options.spp;
   settings.render.seed = options.seed;

@@ -117,14 +117,15 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
     halves[half] = render(scene, parse_sampler("owen"), render_settings, show).image;
   }
   auto [image, relmse] = average(halves[0], halves[1]);
-  write_image(reference.file, image,
-              {{"reference_key", reference_key(settings, comparison, scene)},
-               {"reference_relmse", fmt::format("{:.9g}", relmse)},
-               {"scene", comparison.scene},
-               {"sampler", "owen"},
-               {"spp", std::to_string(reference.spp)},
-               {"depth", std::to_string(comparison.depth)},
-               {"version", std::string(version())}});
+  Metadata metadata{{"reference_key", reference_key(settings, comparison, scene)},
+                    {"reference_relmse", fmt::format("{:.9g}", relmse)},
+                    {"scene", comparison.scene},
+                    {"sampler", "owen"},
+                    {"spp", std::to_string(reference.spp)},
+                    {"depth", std::to_string(comparison.depth)},
+                    {"version", std::string(version())}};
+  metadata.merge(override_metadata(settings.overrides));
+  write_image(reference.file, image, metadata);
   reference.image = std::move(image);
   reference.relmse = relmse;
   return reference;

@@ -73,16 +73,20 @@ RenderSettings settings_for(const RenderOptions& options, RenderSettings setting
   return settings;
 }
 
-void write_outputs(const RenderOptions& options, const Scene& scene, const SamplerSpec& sampler,
-                   const RenderSettings& settings, const RenderResult& result) {
-  const Metadata metadata = render_metadata(options.scene, sampler, settings, result);
+void write_outputs(const RenderOptions& options, const SceneOverrides& overrides,
+                   const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
+                   const RenderResult& result) {
+  const Metadata changes = override_metadata(overrides);
+  Metadata metadata = render_metadata(options.scene, sampler, settings, result);
+  metadata.insert(changes.begin(), changes.end());
   write_image(options.output, result.image, metadata);
   if (!options.weights.empty()) {
     if (!result.weights) throw Error("--weights: the render made no weight map");
     write_image(options.weights, *result.weights, metadata);
   }
   if (!options.stats.empty()) {
-    const auto json = render_stats_json(options.scene, scene, sampler, settings, result);
+    auto json = render_stats_json(options.scene, scene, sampler, settings, result);
+    json["overrides"] = changes;
     write_text_file(options.stats, json.dump(2) + '\n');
   }
 }
@@ -91,9 +95,11 @@ void run_render(const RenderOptions& options) {
   if (!options.renderer.resolution.empty()) parse_resolution(options.renderer.resolution);
   const SamplerSpec sampler = parse_sampler(options.sampler);
   RenderSettings settings = render_settings(options.renderer);
+  const SceneOverrides overrides = scene_overrides(options.renderer);
   check_outputs(options, sampler);
 
-  const Scene scene(read_described(options.scene, options.renderer), embree_isa(settings.isa));
+  const Scene scene(read_described(options.scene, options.renderer, overrides),
+                    embree_isa(settings.isa));
   settings = settings_for(options, settings, scene.description().defaults);
   ProgressMeter meter(options.quiet);
   const auto show = [&](double fraction) {
@@ -103,7 +109,7 @@ void run_render(const RenderOptions& options) {
   const RenderResult result = render(scene, sampler, settings, show);
   meter.clear();
   report_nonfinite(result.stats, settings.seed);
-  write_outputs(options, scene, sampler, settings, result);
+  write_outputs(options, overrides, scene, sampler, settings, result);
   if (!options.quiet) report_done(options, result.stats);
 }
 

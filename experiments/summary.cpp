@@ -169,6 +169,7 @@ Json summarize(const Comparison& comparison) {
                {"isa", name(settings.render.isa)},
                {"seeds", settings.seeds},
                {"spp", settings.rungs},
+               {"overrides", override_metadata(settings.overrides)},
                {"complete", comparison.complete}};
   for (const Metric& metric : metrics()) {
     json["metrics"].push_back({{"name", metric.name},

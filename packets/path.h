@@ -5,7 +5,10 @@
 // depends on it, so every width, layout, thread count and tile order gives the same image.
 #pragma once
 
+#include "packets/absorption.h"
+#include "packets/emission.h"
 #include "packets/flush_denormals.h"
+#include "packets/hits.h"
 #include "packets/paths.h"
 #include "packets/shade.h"
 #include "packets/traversal.h"
@@ -15,91 +18,10 @@
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
-// Radiance that rays of the queue find at their ends: emitting surfaces and the environment.
-template <int W, FeatureMask F>
-void add_emission(const ShadeContext& c) {
-  using V = Float<W>;
-  using I = Int<W>;
-  const SceneData& scene = *c.scene;
-  const RayQueue& rays = c.rays();
-  const HitArray& hits = c.wave->hits;
-  const auto add = [&](int i, const Vec3<V>& radiance, V light_pdf, Mask<W> m) LOCKSTEP_LAMBDA {
-    const V weight =
-        c.bounce == 0 ? V(1.0f) : power_heuristic(load<V>(rays.bsdf_pdf + i), light_pdf);
-    add_radiance(c.wave->paths, load<I>(rays.path + i),
-                 load3<V>(rays.throughput, i) * radiance * weight, m);
-  };
-  for (int i = 0; i < rays.count; i += W) {
-    const Mask<W> active = lanes_below<W>(i, rays.count);
-    const I geometry = load<I>(hits.geometry + i);
-    const Mask<W> miss = active & (geometry < I(0));
-    if (needs<F>(scene, Feature::Environment) && any(miss)) {
-      const LightRow<V> light = load_light(scene.lights, I(scene.environment));
-      add(i, light.radiance, load<V>(rays.environment_pdf + i) * light.probability, miss);
-    }
-    if (!has_area_lights<F>(scene)) continue;
-    const Mask<W> hit = active & !(geometry < I(0));
-    const I first =
-        gather(scene.geometry.rows + 2, select(hit, geometry, I(0)) * I(geometry_stride));
-    const Mask<W> emitting = hit & !(first < I(0));
-    if (none(emitting)) continue;
-    const I entry = select(emitting, first + load<I>(hits.primitive + i), I(0));
-    const Emitted<V> e =
-        hit_light<V, F>(scene, gather(scene.light_of_primitive, entry), load3<V>(rays.origin, i),
-                        load3<V>(rays.direction, i), load<V>(hits.distance + i));
-    // NaN is added too, to be counted.
-    add(i, e.radiance, e.pdf, emitting & !(max_component(e.radiance) <= V(0.0f)));
-  }
-}
-
-// Copies the hits on materials of kind K side by side, in the order of their rays.
-template <int W, MaterialKind K, FeatureMask F>
-void queue_hits(const ShadeContext& c) {
-  using V = Float<W>;
-  using I = Int<W>;
-  const SceneData& scene = *c.scene;
-  const RayQueue& rays = c.rays();
-  const HitArray& hits = c.wave->hits;
-  ShadeQueue& out = c.wave->hits_to_shade;
-  const bool other_kinds =
-      (scene.features & F & material_features & ~bit(material_feature(K))) != 0;
-  int n = 0;
-  for (int i = 0; i < rays.count; i += W) {
-    const I geometry = load<I>(hits.geometry + i);
-    Mask<W> taken = lanes_below<W>(i, rays.count) & !(geometry < I(0));
-    if (other_kinds) {
-      const I row = select(taken, geometry, I(0)) * I(geometry_stride);
-      const I kind = as_int(as_uint(gather(scene.geometry.rows + 3, row)) >> geometry_kind_shift);
-      taken = taken & (kind == I(int(K)));
-    }
-    const Packing<W> lanes(taken);
-    pack3(lanes, out.direction, n, load3<V>(rays.direction, i));
-    pack3(lanes, out.throughput, n, load3<V>(rays.throughput, i));
-    lanes.store(out.barycentric_u + n, load<V>(hits.u + i));
-    lanes.store(out.barycentric_v + n, load<V>(hits.v + i));
-    lanes.store(out.geometry + n, geometry);
-    lanes.store(out.primitive + n, load<I>(hits.primitive + i));
-    lanes.store(out.path + n, load<I>(rays.path + i));
-    if (needs<F>(scene, Feature::Spheres)) {
-      pack3(lanes, out.origin, n, load3<V>(rays.origin, i));
-      lanes.store(out.distance + n, load<V>(hits.distance + i));
-    }
-    n += lanes.count();
-  }
-  out.count = n;
-  if (n == 0) return;
-  // Lanes behind the last hit repeat what is used as an index.
-  for (int i = n; i < n + W; ++i) {
-    out.geometry[i] = out.geometry[n - 1];
-    out.primitive[i] = out.primitive[n - 1];
-    out.path[i] = out.path[n - 1];
-  }
-}
-
 template <int W, MaterialKind K, FeatureMask F>
 LOCKSTEP_INLINE void shade_kind(const ShadeContext& c) {
   if (!needs<F>(*c.scene, material_feature(K))) return;
-  queue_hits<W, K, F>(c);
+  queue_hits<W, F>(*c.scene, K, c.rays(), *c.wave);
   if (c.wave->hits_to_shade.count > 0) shade<W, K, F>(c);
 }
 
@@ -141,14 +63,23 @@ void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
     clock.enter(Stage::Traversal);
     trace_closest(scene, *job.traversal_policy, kind, c.bounce, c.rays(), wave.hits, counts);
     clock.enter(Stage::Shading);
+    if (needs<F>(scene, Feature::Absorption))
+      absorb_on_the_way<W>(scene, wave.hits, wave.rays[c.bounce & 1]);
     if (scene.lights.count > 0) add_emission<W, F>(c);
     if (c.bounce >= job.path.depth) break;
+    if (needs<F>(scene, Feature::Mix)) {
+      resolve_mixes<W, F>(job, wave.paths, c.rays(), c.bounce, wave.hits);
+    }
     c.last = c.bounce + 1 >= job.path.depth;
     c.next_rays().count = 0;
     wave.shadows.count = 0;
     shade_kind<W, MaterialKind::Diffuse, F>(c);
     shade_kind<W, MaterialKind::Conductor, F>(c);
     shade_kind<W, MaterialKind::Coated, F>(c);
+    shade_kind<W, MaterialKind::RoughDiffuse, F>(c);
+    shade_kind<W, MaterialKind::DiffuseTransmission, F>(c);
+    shade_kind<W, MaterialKind::Dielectric, F>(c);
+    shade_kind<W, MaterialKind::Principled, F>(c);
     if (job.log) log_shadows(*job.log, c.bounce, wave.shadows);
     clock.enter(Stage::Traversal);
     trace_occluded(scene, *job.traversal_policy, c.bounce, wave.shadows, counts);

@@ -15,8 +15,8 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 typedef float Float4 __attribute__((vector_size(16)));
 typedef double Double4 __attribute__((vector_size(32)));
 
-// Blocks of lanes.x * lanes.y pixels and lanes.samples samples, one after the other. With interleaved
-// sequences the pixels of a block are those `interleave` apart, which share one.
+// Blocks of lanes.x * lanes.y pixels and lanes.samples samples, one after the other. With
+// interleaved sequences the pixels of a block are those `interleave` apart, which share one.
 inline void order_paths(PathOrder& o) {
   const int step = o.interleave, block_x = o.lanes.x * step, block_y = o.lanes.y * step;
   int n = 0;
@@ -83,14 +83,27 @@ void generate_camera_rays(const TileJob& job, Wave& wave, StageClock& clock) {
   const SampleBatch batch{paths.pixel, paths.sample, paths.count, job.first_sample,
                           int(job.samples)};
   fill_pair<W>(*job.sampler, batch, pixel_pair, u, v);
+  float* lens_u = wave.hits_to_shade.u[1];
+  float* lens_v = wave.hits_to_shade.v[1];
+  const bool lens = needs<F>(*job.scene, Feature::Lens);
+  if (lens) fill_pair<W>(*job.sampler, batch, lens_pair, lens_u, lens_v);
   clock.enter(Stage::Shading);
+  const auto ray_through = [&](const Vec2<V>& point, int i) LOCKSTEP_LAMBDA {
+    if (lens) return lens_ray(camera, point, Vec2<V>(load<V>(lens_u + i), load<V>(lens_v + i)));
+    if (needs<F>(*job.scene, Feature::Orthographic)) return orthographic_ray(camera, point);
+    return pinhole_ray(camera, point);
+  };
   for (int i = 0; i < paths.count; i += W) {
     const V column = to_float(load<Int<W>>(order.x + i) + Int<W>(job.x0));
     const V row = to_float(load<Int<W>>(order.y + i) + Int<W>(job.y0));
-    store3(rays.origin, i, splat<V>(camera.origin));
-    store3(rays.direction, i,
-           camera_direction<V, F>(camera, column, row, Vec2<V>(load<V>(u + i), load<V>(v + i))));
+    const Vec2<V> point =
+        image_point<V, F>(camera, column, row, Vec2<V>(load<V>(u + i), load<V>(v + i)));
+    const CameraRay<V> ray = ray_through(point, i);
+    store3(rays.origin, i, ray.origin);
+    store3(rays.direction, i, ray.direction);
     store3(rays.throughput, i, Vec3<V>(V(1.0f)));
+    if (refracts<F>(*job.scene)) store(rays.eta_scale + i, V(1.0f));
+    if (needs<F>(*job.scene, Feature::Absorption)) store(rays.medium + i, Int<W>(-1));
     store(rays.path + i, Int<W>(i) + lane_indices<W>());
   }
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include "core/frame.h"
+#include "core/texture_coordinates.h"
+#include "packets/surface_maps.h"
 #include "packets/wave.h"
 
 namespace lockstep {
@@ -10,17 +12,13 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 template <class V>
 struct Surface {
   Vec3<V> origin;            // of rays that leave on the viewer's side
+  Vec3<V> origin_beyond;     // and on the other side
   Vec3<V> geometric_normal;  // unit, on the viewer's side
   Frame<V> frame;            // around the shading normal, on the viewer's side
   Vec3<V> wo;                // local, to where the ray came from; wo.z > 0
+  MaskOf<V> outside;         // the viewer is on the side that the mesh calls outside
+  Vec2<V> uv;                // where the scene has textures
 };
-
-// Normalises vectors whose squared length would leave float's range.
-template <class V>
-LOCKSTEP_INLINE Vec3<V> normalize_any(const Vec3<V>& a) {
-  const V largest = max(max_component(abs(a)), V(std::numeric_limits<float>::min()));
-  return normalize(a * (V(1.0f) / largest));
-}
 
 // A point interpolated between a triangle's corners is off its plane by at most seven roundings of
 // the largest coordinate (Pharr, Jakob and Humphreys 2023, section 6.8.4), wherever the ray came
@@ -33,20 +31,6 @@ struct HitPoint {
   Vec3<V> position;
   V magnitude;
 };
-
-// Values at the corners of the lanes' triangles, of three floats per vertex.
-template <class V>
-struct Corners {
-  Vec3<V> a, b, c;
-
-  LOCKSTEP_INLINE Vec3<V> at(V u, V v) const { return fma(u, b, fma(v, c, a * (V(1.0f) - u - v))); }
-};
-
-template <class I>
-LOCKSTEP_INLINE Corners<FloatOf<I>> load_corners(const float* values, const Vec3<I>& vertices) {
-  return {gather_vec3(values, vertices.x, 3), gather_vec3(values, vertices.y, 3),
-          gather_vec3(values, vertices.z, 3)};
-}
 
 template <class V>
 LOCKSTEP_INLINE V largest_coordinate(const Corners<V>& p) {
@@ -69,6 +53,39 @@ LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, MaskOf<I> sphere, I g
   normal = select<V>(sphere, n, normal);
 }
 
+template <int W, FeatureMask F>
+LOCKSTEP_INLINE TextureCoordinates<Float<W>> load_coordinates(const SceneData& scene,
+                                                              const ShadeQueue& queue, int i,
+                                                              const Rows<Int<W>>& geometry,
+                                                              const Vec3<Int<W>>& vertices,
+                                                              const Corners<Float<W>>& corners,
+                                                              const Vec3<Float<W>>& sphere_normal) {
+  using V = Float<W>;
+  using I = Int<W>;
+  const Mask<W> has_uvs = (geometry.w & I(geometry_has_uvs)) != I(0);
+  TextureCoordinates<V> t =
+      triangle_coordinates(corners, load_uv_corners(scene.uvs, vertices, has_uvs),
+                           load<V>(queue.barycentric_u + i), load<V>(queue.barycentric_v + i));
+  if (needs<F>(scene, Feature::Spheres)) {
+    const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
+    const V radius = gather(scene.geometry.spheres + 3, load<I>(queue.geometry + i) * I(4));
+    const TextureCoordinates<V> s = sphere_coordinates(sphere_normal, radius);
+    t.uv = {select(sphere, s.uv.x, t.uv.x), select(sphere, s.uv.y, t.uv.y)};
+    t.du = select<V>(sphere, s.du, t.du);
+    t.dv = select<V>(sphere, s.dv, t.dv);
+  }
+  return t;
+}
+
+// Where a map turns the normal away from the viewer it is bent back until it just faces it.
+template <class V>
+LOCKSTEP_INLINE Vec3<V> facing_viewer(const Vec3<V>& normal, const Vec3<V>& away) {
+  constexpr float least = 1e-2f;
+  const V cosine = dot(normal, away);
+  const Vec3<V> bent = normalize(fma(V(least) - cosine, away, normal));
+  return select<V>(cosine < V(least), bent, normal);
+}
+
 // The surface at entries i... of the queue, whose geometries have these rows.
 template <int W, FeatureMask F>
 LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const ShadeQueue& queue,
@@ -76,8 +93,7 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
   using V = Float<W>;
   using I = Int<W>;
   const Vec3<V> direction = load3<V>(queue.direction, i);
-  const Vec3<I> vertices =
-      gather_vec3(scene.triangles, geometry.x + load<I>(queue.primitive + i), 3);
+  const Vec3<I> vertices = load_vertices(scene, geometry, load<I>(queue.primitive + i));
   const V u = load<V>(queue.barycentric_u + i), v = load<V>(queue.barycentric_v + i);
   const Corners<V> corners = load_corners(scene.positions, vertices);
   HitPoint<V> hit{corners.at(u, v), largest_coordinate(corners)};
@@ -91,19 +107,45 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
   Surface<V> s;
   const Vec3<V> unit = normalize_any(normal);
   const Vec3<V> away = -direction;
-  s.geometric_normal = select<V>(dot(unit, away) < V(0.0f), -unit, unit);
-  s.origin = fma(V(offset_scale) * hit.magnitude, s.geometric_normal, hit.position);
+  const Mask<W> behind = dot(unit, away) < V(0.0f);
+  s.outside = !behind;
+  s.geometric_normal = select<V>(behind, -unit, unit);
+  const V offset = V(offset_scale) * hit.magnitude;
+  s.origin = fma(offset, s.geometric_normal, hit.position);
+  s.origin_beyond = fma(-offset, s.geometric_normal, hit.position);
 
   Vec3<V> shading = s.geometric_normal;
   if (needs<F>(scene, Feature::SmoothNormals)) {
     const Vec3<V> n = normalize_any(load_corners(scene.normals, vertices).at(u, v));
-    const Vec3<V> facing = select<V>(dot(n, s.geometric_normal) < V(0.0f), -n, n);
+    const Mask<W> smooth = (geometry.w & I(geometry_is_smooth)) != I(0);
+    const Mask<W> turned = dot(n, s.geometric_normal) < V(0.0f);
+    // Vertex normals say where the outside is, whatever the winding.
+    s.outside = select(smooth, Mask<W>(!turned), s.outside);
+    const Vec3<V> facing = select<V>(turned, -n, n);
     // Where interpolation turns the normal away from the viewer, the geometric one serves.
-    const auto usable =
-        ((geometry.w & I(geometry_is_smooth)) != I(0)) & (dot(facing, away) > V(1e-4f));
-    shading = select<V>(usable, facing, shading);
+    shading = select<V>(smooth & (dot(facing, away) > V(1e-4f)), facing, shading);
   }
-  s.frame = frame_around(shading);
+  if (needs_any<F>(scene, uv_features)) {
+    const TextureCoordinates<V> t =
+        load_coordinates<W, F>(scene, queue, i, geometry, vertices, corners, unit);
+    s.uv = t.uv;
+    if (needs<F>(scene, Feature::SurfaceMaps)) {
+      const V side = select(s.outside, V(1.0f), V(-1.0f));
+      const Mask<W> active = lanes_below<W>(i, queue.count);
+      const Vec3<V> outer = shading * side;
+      const Vec3<V> mapped =
+          apply_surface_maps<W>(scene, load<I>(queue.material + i), active, t, outer);
+      const auto altered = (mapped.x != outer.x) | (mapped.y != outer.y) | (mapped.z != outer.z);
+      shading = select<V>(altered, facing_viewer<V>(mapped * side, away), shading);
+    }
+    if (needs<F>(scene, Feature::Tangents)) {
+      s.frame = frame_along(shading, t.du);
+    } else {
+      s.frame = frame_around(shading);
+    }
+  } else {
+    s.frame = frame_around(shading);
+  }
   s.wo = s.frame.to_local(away);
   s.wo.z = max(s.wo.z, V(1e-6f));  // a grazing ray may round to below the horizon
   return s;

@@ -44,6 +44,8 @@ struct alignas(64) RayQueue {
   Float3Array throughput;
   FloatArray bsdf_pdf;         // with which the direction was sampled
   FloatArray environment_pdf;  // with which light sampling gives it, if it misses everything
+  FloatArray eta_scale;        // what refraction took from the throughput: see radiance_scale()
+  IntArray medium;             // material of the dielectric that the ray is in, or -1
   IntArray path;
 };
 
@@ -52,6 +54,13 @@ struct alignas(64) HitArray {
   FloatArray distance;
   FloatArray u, v;  // barycentric
   IntArray geometry, primitive;
+  IntArray material;  // where the scene has mixes: what the path goes on with
+};
+
+// Hits in the order in which they are to be shaded.
+struct alignas(64) HitOrder {
+  int count = 0;
+  IntArray hit, material;
 };
 
 // Distance: up to which nothing may be in the way; after tracing, -infinity where something is.
@@ -71,7 +80,9 @@ struct alignas(64) ShadeQueue {
   FloatArray distance;    // the hit's: only where the scene has spheres
   Float3Array throughput;
   FloatArray barycentric_u, barycentric_v;
-  IntArray geometry, primitive, path;
+  FloatArray eta_scale;  // see RayQueue
+  IntArray medium;
+  IntArray geometry, primitive, material, path;
   UIntArray pixel, sample;
   FloatArray u[4], v[4];
 };
@@ -81,9 +92,16 @@ struct Wave {
   PathTable paths;
   RayQueue rays[2];
   HitArray hits;
+  HitOrder found, ordered;
   ShadowQueue shadows;
   ShadeQueue hits_to_shade;
 };
+
+// True where what is refracted is carried along.
+template <FeatureMask F>
+constexpr bool refracts(const SceneData& scene) {
+  return needs_any<F>(scene, feature_set(Feature::Dielectric, Feature::Principled));
+}
 
 template <class V>
 LOCKSTEP_INLINE Vec3<V> load3(const Float3Array& a, int i) {

@@ -12,6 +12,9 @@ enum class Purpose { Light, Bsdf, Choice, Roulette };  // Choice: which light, w
 // `bounce` counts interactions from 0.
 constexpr int sample_pair(int bounce, Purpose purpose) { return 1 + 4 * bounce + int(purpose); }
 
+// Position on the lens: the pair of a roulette that is not played where there is one.
+inline constexpr int lens_pair = sample_pair(0, Purpose::Roulette);
+
 // Pairs are numbered below 4096 (see random_point).
 inline constexpr int max_depth = 1020;
 inline constexpr int max_pairs = 4096;

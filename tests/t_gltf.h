@@ -1,22 +1,15 @@
 // glTF files made of strings, and what tests of their reader share.
 #pragma once
 
-#include "core/error.h"
 #include "core/gltf/reader.h"
-
-#include <glm/geometric.hpp>
-
-#include <gtest/gtest.h>
-#include <unistd.h>
+#include "tests/t_description.h"
+#include "tests/t_files.h"
 
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <variant>
 #include <vector>
 
 namespace lockstep {
@@ -116,63 +109,20 @@ struct GltfBuffer {
   }
 };
 
-class Gltf : public testing::Test {
+class Gltf : public TestWithFiles {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("lockstep_gltf_" + std::to_string(getpid()) + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-  }
   SceneDescription read(const std::string& bytes) const {
-    write("scene.gltf", bytes);
-    return read_gltf((folder_ / "scene.gltf").string());
+    return read_gltf(write("scene.gltf", bytes));
   }
-
-  // The message, with the folder's name taken off.
   std::string error_of(const std::string& bytes) const {
-    try {
-      read(bytes);
-    } catch (const Error& error) {
-      std::string message = error.what();
-      const std::string prefix = folder_.string() + "/";
-      for (size_t at; (at = message.find(prefix)) != std::string::npos;) {
-        message.erase(at, prefix.size());
-      }
-      return message;
-    }
-    return "no error";
+    return message_of([&] { read(bytes); });
   }
   void expect_error(const std::string& bytes, const std::string& part) const {
     const std::string message = error_of(bytes);
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\n  lacks " << part;
+    expect_one_line_with(message, part);
     EXPECT_EQ(message.rfind("scene.gltf: ", 0), 0u) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
-
-  std::filesystem::path folder_;
 };
-
-inline const TriangleMesh& mesh_of(const SceneDescription& scene, size_t shape = 0) {
-  return std::get<TriangleMesh>(scene.shapes.at(shape).geometry);
-}
-
-inline bool warns(const SceneDescription& scene, const std::string& text) {
-  for (const std::string& warning : scene.warnings) {
-    if (warning.find(text) != std::string::npos) return true;
-  }
-  return false;
-}
-
-inline void expect_near(glm::vec3 a, glm::vec3 b, float tolerance = 1e-5f) {
-  EXPECT_LT(glm::distance(a, b), tolerance)
-      << a.x << " " << a.y << " " << a.z << " against " << b.x << " " << b.y << " " << b.z;
-}
 
 inline const std::vector<float> corner_positions{0, 0, 0, 1, 0, 0, 0, 1, 0};
 

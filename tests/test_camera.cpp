@@ -35,6 +35,11 @@ struct FlatCamera {
 
 constexpr Vec2<float> corner_of_box{0.0f, 0.0f};
 
+template <class V>
+Vec3<V> camera_direction(const CameraData& camera, V column, V row, const Vec2<V>& u) {
+  return pinhole_ray(camera, image_point(camera, column, row, u)).direction;
+}
+
 TEST(Camera, FieldOfViewSpansTheShorterAxis) {
   for (const glm::ivec2 size : {glm::ivec2(640, 480), glm::ivec2(300, 900), glm::ivec2(64, 64)}) {
     for (const float fov : {20.0f, 60.0f, 90.0f, 120.0f}) {
@@ -201,6 +206,62 @@ TEST(Camera, HasTheSameBitsAtEveryWidth) {
       }
     });
   }
+}
+
+// Rays through a lens meet where the pinhole's ray crosses the plane in focus, spread over the lens
+// in proportion to area.
+TEST(Camera, LensIsSharpAtItsFocalDistance) {
+  CameraDescription description = moved_camera();
+  description.lens_radius = 0.25f;
+  description.focal_distance = 7.0f;
+  const FlatCamera camera(description, {320, 200, {}});
+  EXPECT_TRUE(camera.flat.features & bit(Feature::Lens));
+  const glm::mat3 rotation(description.camera_to_world);
+  const glm::vec3 forward = rotation * glm::vec3(0, 0, 1);
+  CellCounts counts(16, 16);
+  for (std::uint32_t i = 0; i < sample_count; ++i) {
+    const Vec2<float> point(float(i % 320), float(i / 320 % 200));
+    const CameraRay<float> sharp = pinhole_ray(camera.data, point);
+    const CameraRay<float> ray = lens_ray(camera.data, point, uniform2(i, 3));
+    const glm::vec3 focus =
+        sharp.origin + sharp.direction * (7.0f / glm::dot(sharp.direction, forward));
+    const glm::vec3 to_focus = glm::normalize(focus - ray.origin);
+    ASSERT_LT(glm::length(to_focus - ray.direction), 1e-5f);
+    const glm::vec3 on_lens = glm::transpose(rotation) * (ray.origin - camera.data.origin);
+    ASSERT_NEAR(on_lens.z, 0.0f, 1e-5f);
+    const double r = std::hypot(double(on_lens.x), double(on_lens.y)) / 0.25;
+    ASSERT_LT(r, 1.0 + 1e-5);
+    const double turns = std::atan2(double(on_lens.y), double(on_lens.x)) / glm::two_pi<double>();
+    counts.add({std::min(r * r, 1.0 - 1e-9), turns - std::floor(turns)});
+  }
+  const DensityTest test = counts.test([](glm::dvec2) { return 1.0; });
+  EXPECT_GT(test.chi_square.p_value, test_significance);
+}
+
+TEST(Camera, OrthographicRaysRunSideBySide) {
+  CameraDescription description;
+  description.camera_to_world = glm::translate(glm::mat4(1.0f), glm::vec3(1.0f, 2.0f, 3.0f));
+  description.projection = CameraDescription::Projection::Orthographic;
+  description.extent = 4.0f;
+  const FlatCamera camera(description, {300, 100, {}});
+  EXPECT_TRUE(camera.flat.features & bit(Feature::Orthographic));
+  const CameraRay<float> first = orthographic_ray(camera.data, Vec2<float>(0.0f, 0.0f));
+  const CameraRay<float> last = orthographic_ray(camera.data, Vec2<float>(300.0f, 100.0f));
+  EXPECT_LT(glm::length(first.origin - glm::vec3(1.0f - 6.0f, 2.0f + 2.0f, 3.0f)), 1e-5f);
+  EXPECT_LT(glm::length(last.origin - glm::vec3(1.0f + 6.0f, 2.0f - 2.0f, 3.0f)), 1e-5f);
+  EXPECT_EQ(first.direction, glm::vec3(0, 0, 1));
+  EXPECT_EQ(last.direction, first.direction);
+}
+
+TEST(Camera, ShiftMovesTheCentreOfTheImage) {
+  CameraDescription description;
+  description.fov_degrees = 90.0f;
+  description.shift = {0.25f, -0.5f};
+  const FlatCamera camera(description, {200, 100, {}});
+  const glm::vec3 d = pinhole_ray(camera.data, Vec2<float>(100.0f, 50.0f)).direction;
+  // The shorter side is 2 long at z = 1.
+  EXPECT_NEAR(d.x / d.z, 0.5f, 1e-6f);
+  EXPECT_NEAR(d.y / d.z, -1.0f, 1e-6f);
 }
 
 }  // namespace

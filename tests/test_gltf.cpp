@@ -14,12 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-glm::vec3 normal_of(const TriangleMesh& mesh, size_t triangle = 0) {
-  const glm::uvec3 t = mesh.triangles.at(triangle);
-  const glm::vec3 a = mesh.positions[t.x];
-  return glm::normalize(glm::cross(mesh.positions[t.y] - a, mesh.positions[t.z] - a));
-}
-
 // --- Containers and buffers
 
 TEST_F(Gltf, BuffersInsideBesideAndInContainers) {

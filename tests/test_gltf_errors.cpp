@@ -24,8 +24,8 @@ TEST_F(Gltf, FilesThatAreNotGltf) {
   expect_error("{\"asset\":{\"version\":\"2.0\"},\"buffers\":[1]}", "buffers");
   const std::string deep(100000, '[');
   expect_error("{\"asset\":{\"version\":\"2.0\",\"extras\":" + deep, "nested more than 100 deep");
-  EXPECT_THROW(read_gltf((folder_ / "missing.gltf").string()), Error);
-  EXPECT_THROW(read_gltf(folder_.string()), Error);
+  EXPECT_THROW(read_gltf(path("missing.gltf")), Error);
+  EXPECT_THROW(read_gltf(directory_.string()), Error);
 }
 
 TEST_F(Gltf, BuffersThatAreMissingOrShort) {

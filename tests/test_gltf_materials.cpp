@@ -22,19 +22,6 @@ std::string material_file(const std::string& material, const std::string& rest =
       material + "}]" + rest);
 }
 
-const Material& material_of(const SceneDescription& scene) {
-  return scene.materials.at(size_t(scene.shapes.at(0).material));
-}
-
-template <class Model>
-const Model& model_of(const SceneDescription& scene) {
-  return std::get<Model>(material_of(scene).model);
-}
-
-const ImageTexture& texture_of(const SceneDescription& scene, int index) {
-  return std::get<ImageTexture>(scene.textures.at(size_t(index)));
-}
-
 std::string extension(const std::string& name, const std::string& members) {
   return "\"extensions\":{\"" + name + "\":{" + members + "}}";
 }
@@ -78,12 +65,12 @@ TEST_F(GltfMaterials, FactorsAndTextures) {
   EXPECT_EQ(m.alpha.texture, m.metallic.texture);
   EXPECT_FLOAT_EQ(material_of(scene).normal_scale, 0.7f);
   ASSERT_EQ(scene.textures.size(), 3u);  // nothing for occlusion
-  const ImageTexture& color = texture_of(scene, m.base_color.texture);
-  EXPECT_EQ(color.file, (folder_ / "a b.png").string());
+  const ImageTexture& color = image_of(scene, m.base_color.texture);
+  EXPECT_EQ(color.file, path("a b.png"));
   EXPECT_EQ(color.encoding, TextureEncoding::Srgb);
-  EXPECT_EQ(texture_of(scene, m.alpha.texture).encoding, TextureEncoding::Linear);
-  EXPECT_EQ(texture_of(scene, m.alpha.texture).file, (folder_ / "b+c.png").string());
-  EXPECT_EQ(texture_of(scene, material_of(scene).normal_map).encoding, TextureEncoding::Linear);
+  EXPECT_EQ(image_of(scene, m.alpha.texture).encoding, TextureEncoding::Linear);
+  EXPECT_EQ(image_of(scene, m.alpha.texture).file, path("b+c.png"));
+  EXPECT_EQ(image_of(scene, material_of(scene).normal_map).encoding, TextureEncoding::Linear);
   EXPECT_NE(color.where.find("scene.gltf: image 0"), std::string::npos);
   EXPECT_FALSE(warns(scene, "occlusion"));
 }
@@ -105,7 +92,7 @@ TEST_F(GltfMaterials, Samplers) {
         ",\"images\":[{\"uri\":\"a.png\"}],\"samplers\":[{" + members +
         "}],\"textures\":[{\"source\":0,\"sampler\":0}],\"materials\":[{\"pbrMetallicRoughness\":"
         "{\"baseColorTexture\":{\"index\":0}}}]"));
-    return texture_of(scene, 0);
+    return image_of(scene, 0);
   };
   const ImageTexture a = with_sampler("\"wrapS\":33071,\"wrapT\":33648,\"magFilter\":9728");
   EXPECT_EQ(a.wrap_u, TextureWrap::Clamp);
@@ -132,12 +119,12 @@ TEST_F(GltfMaterials, ImagesInsideTheFile) {
       "{\"index\":0}},\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":1}}]");
   const SceneDescription scene = read(bytes);
   const auto& m = model_of<PrincipledMaterial>(scene);
-  const ImageTexture& color = texture_of(scene, m.base_color.texture);
+  const ImageTexture& color = image_of(scene, m.base_color.texture);
   ASSERT_TRUE(color.encoded);
   EXPECT_EQ(std::string(color.encoded->begin(), color.encoded->end()), "bytes of an image");
   EXPECT_EQ(color.file, "wood");
-  EXPECT_EQ(texture_of(scene, m.alpha.texture).encoded, color.encoded);  // one copy
-  const ImageTexture& glow = texture_of(scene, scene.shapes[0].emission->radiance.texture);
+  EXPECT_EQ(image_of(scene, m.alpha.texture).encoded, color.encoded);  // one copy
+  const ImageTexture& glow = image_of(scene, scene.shapes[0].emission->radiance.texture);
   EXPECT_EQ(std::string(glow.encoded->begin(), glow.encoded->end()), "ABC");
 }
 
@@ -146,7 +133,7 @@ TEST_F(GltfMaterials, TextureTransforms) {
     const SceneDescription scene =
         read(material_file("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0," +
                            extension("KHR_texture_transform", members) + "}}"));
-    return texture_of(scene, 0).uv;
+    return image_of(scene, 0).uv;
   };
   const auto apply = [](const UvTransform& t, glm::vec2 uv) {
     return glm::vec2(glm::dot(t.u_row, uv), glm::dot(t.v_row, uv)) + t.offset;
@@ -189,7 +176,7 @@ TEST_F(GltfMaterials, Emission) {
       extension("KHR_materials_emissive_strength", "\"emissiveStrength\":8")));
   ASSERT_TRUE(scene.shapes[0].emission);
   EXPECT_EQ(scene.shapes[0].emission->radiance.value, glm::vec3(8, 4, 0));
-  EXPECT_EQ(texture_of(scene, scene.shapes[0].emission->radiance.texture).encoding,
+  EXPECT_EQ(image_of(scene, scene.shapes[0].emission->radiance.texture).encoding,
             TextureEncoding::Srgb);
   EXPECT_TRUE(scene.shapes[0].emission->two_sided);
   EXPECT_TRUE(scene.environment);  // what glows by a texture is no lamp
@@ -259,7 +246,7 @@ TEST_F(GltfMaterials, PartialTransmission) {
   const auto& mix = model_of<MixMaterial>(scene);
   EXPECT_EQ(mix.amount.value, 0.75f);
   EXPECT_EQ(mix.amount.channel, 0);
-  EXPECT_EQ(texture_of(scene, mix.amount.texture).file, (folder_ / "b+c.png").string());
+  EXPECT_EQ(image_of(scene, mix.amount.texture).file, path("b+c.png"));
   const Material& first = scene.materials.at(size_t(mix.first));
   const Material& second = scene.materials.at(size_t(mix.second));
   EXPECT_EQ(std::get<PrincipledMaterial>(first.model).transmission, FloatInput(0.0f));
@@ -295,7 +282,7 @@ TEST_F(GltfMaterials, SpecularCoatAndIor) {
   EXPECT_EQ(m.coat_alpha.channel, 1);
   EXPECT_EQ(m.coat_alpha.power, 2.0f);
   EXPECT_EQ(m.coat.texture, m.coat_alpha.texture);
-  EXPECT_EQ(texture_of(scene, m.coat.texture).encoding, TextureEncoding::Linear);
+  EXPECT_EQ(image_of(scene, m.coat.texture).encoding, TextureEncoding::Linear);
 
   const SceneDescription tinted =
       read(material_file(extension("KHR_materials_specular", "\"specularColorFactor\":[0,1,0]")));
@@ -367,7 +354,7 @@ TEST_F(GltfMaterials, TexturesThatAreWrong) {
   EXPECT_TRUE(warns(unknown, "without an image of a known kind"));
   const SceneDescription webp =
       read(file("\"uri\":\"a.webp\"", extension("EXT_texture_webp", "\"source\":0")));
-  EXPECT_EQ(texture_of(webp, material_of(webp).normal_map).file, (folder_ / "a.webp").string());
+  EXPECT_EQ(image_of(webp, material_of(webp).normal_map).file, path("a.webp"));
 }
 
 // A view past its buffer's end, which an image reader would follow.

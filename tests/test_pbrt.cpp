@@ -224,7 +224,7 @@ TEST_F(Pbrt, UnsupportedThingsWarnOncePerKind) {
   EXPECT_EQ(scene.warnings.size(), 7u);
   ASSERT_EQ(scene.shapes.size(), 3u);
   expect_near(sphere_of(scene, 2).center, {0, 0, 0});
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 0).reflectance, glm::vec3(0.5f));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 0).reflectance, glm::vec3(0.5f));
 }
 
 // --- Broken files
@@ -331,13 +331,9 @@ TEST_F(Pbrt, BrokenFilesSayWhereAndWhat) {
       {world + "AreaLightSource \"diffuse\" \"string filename\" \"a.exr\" \"rgb L\" [1 1 1]",
        "both \"L\" and \"filename\""},
   };
-  for (const Case& c : cases) {
-    const std::string message = error_of(c.text);
-    EXPECT_NE(message.find(c.message), std::string::npos) << message << "\nexpected " << c.message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
-  EXPECT_THROW(read_pbrt((folder_ / "absent.pbrt").string()), Error);
-  EXPECT_THROW(read_pbrt(folder_.string()), Error);
+  for (const Case& c : cases) expect_one_line_with(error_of(c.text), c.message);
+  EXPECT_THROW(read_pbrt(path("absent.pbrt")), Error);
+  EXPECT_THROW(read_pbrt(directory_.string()), Error);
 }
 
 // Everything that the language has, for what follows to damage.
@@ -403,7 +399,7 @@ TEST_F(Pbrt, DamagedFilesAreReadOrRefused) {
   for (int trial = 0; trial < trials; ++trial) {
     const std::string message = error_of(damaged(everything, trial % 4, random));
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    if (message == "no error") continue;
+    if (message.empty()) continue;
     ++refused;
     EXPECT_TRUE(message.starts_with("scene.pbrt:")) << message;
   }

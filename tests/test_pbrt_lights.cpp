@@ -71,7 +71,7 @@ TEST_F(Pbrt, AreaLightsWithPowerOrAnImage) {
   }
   ASSERT_EQ(scene.textures.size(), 1u);
   const auto& image = std::get<ImageTexture>(scene.textures[0]);
-  EXPECT_EQ(image.file, (folder_ / "glow.exr").string());
+  EXPECT_EQ(image.file, path("glow.exr"));
   EXPECT_EQ(image.uv.v_row, glm::vec2(0, -1));
   EXPECT_TRUE(scene.warnings.empty());
 }
@@ -129,8 +129,8 @@ TEST_F(Pbrt, EnvironmentMapsOfV4) {
     LightSource "infinite" "string filename" "sky.exr" "float scale" .5)");
   const Environment& sky = scene.environment.value();
   EXPECT_EQ(sky.mapping, Environment::Mapping::EqualAreaOctahedral);
-  EXPECT_EQ(sky.file, (folder_ / "sky.exr").string());
-  EXPECT_EQ(sky.where, (folder_ / "scene.pbrt").string() + ":4");
+  EXPECT_EQ(sky.file, path("sky.exr"));
+  EXPECT_EQ(sky.where, path("scene.pbrt") + ":4");
   EXPECT_EQ(sky.radiance, glm::vec3(0.5f));
   expect_near(sky.to_world[0], {-1, 0, 0});
   expect_near(sky.to_world[1], {0, 0, 1});
@@ -168,7 +168,7 @@ TEST_F(Pbrt, OneEnvironmentMapStaysAlone) {
     LightSource "infinite" "rgb L" [9 9 9]
     LightSource "infinite" "string filename" "first.exr"
     LightSource "infinite" "string filename" "second.exr" "float illuminance" 3)");
-  EXPECT_EQ(scene.environment.value().file, (folder_ / "first.exr").string());
+  EXPECT_EQ(scene.environment.value().file, path("first.exr"));
   EXPECT_EQ(scene.environment.value().radiance, glm::vec3(1.0f));
   EXPECT_TRUE(warns(scene, ":4: beside an environment map"));
   EXPECT_TRUE(warns(scene, ":5: the illuminance of an environment map"));

@@ -21,22 +21,22 @@ TEST_F(Pbrt, MaterialsOfV4) {
       "  \"bool remaproughness\" false Shape \"sphere\"\n"
       "Material \"conductor\" \"rgb reflectance\" [.25 .5 1] \"float roughness\" 0 Shape "
       "\"sphere\"");
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 0).reflectance, glm::vec3(.1f, .2f, .3f));
-  const auto& coated = material_of<CoatedMaterial>(scene, 1);
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 0).reflectance, glm::vec3(.1f, .2f, .3f));
+  const auto& coated = model_of<CoatedMaterial>(scene, 1);
   EXPECT_TRUE(coated.layered);
   EXPECT_EQ(coated.diffuse, glm::vec3(.4f, .5f, .6f));
   EXPECT_EQ(coated.specular, glm::vec3(1.0f));
   EXPECT_FLOAT_EQ(coated.alpha, 0.5f);
   EXPECT_FLOAT_EQ(coated.eta, 1.5f);
-  const auto& gold = material_of<ConductorMaterial>(scene, 2);
+  const auto& gold = model_of<ConductorMaterial>(scene, 2);
   EXPECT_LT(gold.eta.value.x, gold.eta.value.z);
   EXPECT_FLOAT_EQ(gold.alpha.x, 0.2f);
   EXPECT_FLOAT_EQ(gold.alpha.y, 0.3f);
-  const auto& given = material_of<ConductorMaterial>(scene, 3);
+  const auto& given = model_of<ConductorMaterial>(scene, 3);
   EXPECT_EQ(given.eta, glm::vec3(1, 2, 3));
   EXPECT_EQ(given.k, glm::vec3(4, 5, 6));
   EXPECT_FLOAT_EQ(given.alpha.x, 0.3f);
-  const auto& mirror = material_of<ConductorMaterial>(scene, 4);
+  const auto& mirror = model_of<ConductorMaterial>(scene, 4);
   const glm::vec3 f = mirror.k.value * mirror.k.value /
                       (4.0f + mirror.k.value * mirror.k.value);  // Fresnel for eta 1
   expect_near(f, {.25f, .5f, 1.0f}, 1e-3f);
@@ -53,17 +53,17 @@ TEST_F(Pbrt, MaterialsOfV3) {
       "Material \"plastic\" \"float roughness\" .2 \"bool remaproughness\" \"false\" Shape "
       "\"sphere\"\n"
       "Material \"metal\" \"spectrum eta\" \"spds/Ag.eta.spd\" \"rgb k\" [1 2 3] Shape \"sphere\"");
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 0).reflectance, glm::vec3(.1f, .2f, .3f));
-  const auto& plastic = material_of<CoatedMaterial>(scene, 1);
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 0).reflectance, glm::vec3(.1f, .2f, .3f));
+  const auto& plastic = model_of<CoatedMaterial>(scene, 1);
   EXPECT_FALSE(plastic.layered);
   EXPECT_EQ(plastic.diffuse, glm::vec3(.4f, .2f, .2f));
   EXPECT_EQ(plastic.specular, glm::vec3(.5f));
   EXPECT_NEAR(plastic.alpha, 0.21556f, 1e-4f);
-  const auto& defaults = material_of<CoatedMaterial>(scene, 2);
+  const auto& defaults = model_of<CoatedMaterial>(scene, 2);
   EXPECT_EQ(defaults.diffuse, glm::vec3(.25f));
   EXPECT_EQ(defaults.specular, glm::vec3(.25f));
   EXPECT_FLOAT_EQ(defaults.alpha, 0.2f);
-  const auto& silver = material_of<ConductorMaterial>(scene, 3);
+  const auto& silver = model_of<ConductorMaterial>(scene, 3);
   EXPECT_NEAR(silver.eta.value.x, 0.155f, 1e-3f);
   EXPECT_EQ(silver.k, glm::vec3(1, 2, 3));
   EXPECT_TRUE(scene.warnings.empty());
@@ -78,7 +78,7 @@ TEST_F(Pbrt, ShapesOfOneMaterialShareIt) {
   ASSERT_EQ(scene.materials.size(), 3u);
   const std::vector<int> expected = {0, 1, 1, 2, 1};
   for (size_t i = 0; i < 5; ++i) EXPECT_EQ(scene.shapes.at(i).material, expected[i]);
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 1).reflectance, glm::vec3(1, 0, 0));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 1).reflectance, glm::vec3(1, 0, 0));
 }
 
 // They bend no light: leaving them out changes nothing.
@@ -94,14 +94,14 @@ TEST_F(Pbrt, InterfacesAreLeftOut) {
         read_world(material + "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n" + triangle);
     ASSERT_EQ(lamp.shapes.size(), 1u);
     EXPECT_TRUE(lamp.shapes[0].emission);
-    EXPECT_EQ(material_of<DiffuseMaterial>(lamp).reflectance, glm::vec3(0.0f));
+    EXPECT_EQ(model_of<DiffuseMaterial>(lamp).reflectance, glm::vec3(0.0f));
     EXPECT_TRUE(warns(lamp, "scene.pbrt:4: lights with an interface material"));
   }
 }
 
 TEST_F(Pbrt, SpectraBecomeColours) {
   const auto reflectance = [&](const std::string& spectrum) {
-    return material_of<DiffuseMaterial>(
+    return model_of<DiffuseMaterial>(
                read_world("Material \"diffuse\" \"spectrum reflectance\" " + spectrum + triangle))
         .reflectance.value;
   };
@@ -119,10 +119,10 @@ TEST_F(Pbrt, SpectraByNameAndFromFiles) {
                  "Material \"dielectric\" \"spectrum eta\" \"glass-F11\"" + triangle +
                  "Material \"conductor\" \"spectrum eta\" \"metal-CuZn-eta\"" + triangle +
                  "Material \"diffuse\" \"spectrum reflectance\" \"absent\"\n" + triangle);
-  expect_near(material_of<DiffuseMaterial>(scene, 0).reflectance.value, glm::vec3(0.5f), 1e-4f);
-  EXPECT_NEAR(material_of<DielectricMaterial>(scene, 1).eta, 1.79f, 1e-2f);
-  EXPECT_LT(material_of<ConductorMaterial>(scene, 2).eta.value.x, 0.5f);
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 3).reflectance, glm::vec3(0.5f));
+  expect_near(model_of<DiffuseMaterial>(scene, 0).reflectance.value, glm::vec3(0.5f), 1e-4f);
+  EXPECT_NEAR(model_of<DielectricMaterial>(scene, 1).eta, 1.79f, 1e-2f);
+  EXPECT_LT(model_of<ConductorMaterial>(scene, 2).eta.value.x, 0.5f);
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 3).reflectance, glm::vec3(0.5f));
   EXPECT_TRUE(warns(scene, "the spectrum \"absent\" is not known"));
   EXPECT_EQ(scene.warnings.size(), 1u);
 }
@@ -133,17 +133,17 @@ TEST_F(Pbrt, TransparentMaterialsOfV4) {
     Shape "sphere"
     Material "thindielectric" Shape "sphere"
     Material "diffusetransmission" "rgb reflectance" [.2 .4 .6] "float scale" .5 Shape "sphere")");
-  const auto& glass = material_of<DielectricMaterial>(scene, 0);
+  const auto& glass = model_of<DielectricMaterial>(scene, 0);
   EXPECT_FLOAT_EQ(glass.eta, 1.8f);
   EXPECT_FLOAT_EQ(glass.alpha.x, 0.5f);
   EXPECT_FLOAT_EQ(glass.alpha.y, 0.2f);
   EXPECT_FALSE(glass.thin);
   EXPECT_EQ(glass.reflectance, glm::vec3(1.0f));
-  const auto& pane = material_of<DielectricMaterial>(scene, 1);
+  const auto& pane = model_of<DielectricMaterial>(scene, 1);
   EXPECT_TRUE(pane.thin);
   EXPECT_FLOAT_EQ(pane.eta, 1.5f);
   EXPECT_EQ(pane.alpha, glm::vec2(0.0f));
-  const auto& sheet = material_of<DiffuseTransmissionMaterial>(scene, 2);
+  const auto& sheet = model_of<DiffuseTransmissionMaterial>(scene, 2);
   expect_near(sheet.reflectance.value, {.1f, .2f, .3f});
   expect_near(sheet.transmittance.value, glm::vec3(0.125f));
   EXPECT_TRUE(scene.warnings.empty());
@@ -155,19 +155,19 @@ TEST_F(Pbrt, TransparentMaterialsOfV3) {
     Material "glass" "float eta" 1.4 "float uroughness" .1 "float vroughness" .1 Shape "sphere"
     Material "mirror" "rgb Kr" [.9 .8 .7] Shape "sphere"
     Material "matte" "float sigma" 20 Shape "sphere")");
-  const auto& smooth = material_of<DielectricMaterial>(scene, 0);
+  const auto& smooth = model_of<DielectricMaterial>(scene, 0);
   EXPECT_FLOAT_EQ(smooth.eta, 1.3f);
   EXPECT_EQ(smooth.alpha, glm::vec2(0.0f));
   EXPECT_EQ(smooth.reflectance, glm::vec3(.5f, .6f, .7f));
   EXPECT_EQ(smooth.transmittance, glm::vec3(1.0f));
-  const auto& rough = material_of<DielectricMaterial>(scene, 1);
+  const auto& rough = model_of<DielectricMaterial>(scene, 1);
   EXPECT_FLOAT_EQ(rough.eta, 1.4f);
   EXPECT_NEAR(rough.alpha.x, 0.46176f, 1e-4f);
-  const auto& mirror = material_of<ConductorMaterial>(scene, 2);
+  const auto& mirror = model_of<ConductorMaterial>(scene, 2);
   EXPECT_EQ(mirror.specular, glm::vec3(.9f, .8f, .7f));
   EXPECT_EQ(mirror.eta, glm::vec3(0.0f));
   EXPECT_EQ(mirror.alpha, glm::vec2(0.0f));
-  EXPECT_FLOAT_EQ(material_of<DiffuseMaterial>(scene, 3).sigma.value, 20.0f);
+  EXPECT_FLOAT_EQ(model_of<DiffuseMaterial>(scene, 3).sigma.value, 20.0f);
   EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -179,7 +179,7 @@ TEST_F(Pbrt, SumsOfReflectionsBecomeMixes) {
     Material "uber" "rgb Kd" [.9 .3 .3] Shape "sphere"
     Material "translucent" "rgb Kd" [.6 .6 .6] "rgb Ks" [.4 .4 .4] "rgb transmit" [1 1 1]
       "rgb reflect" [.5 .5 .5] Shape "sphere")");
-  const auto& mix = material_of<MixMaterial>(scene, 0);
+  const auto& mix = model_of<MixMaterial>(scene, 0);
   EXPECT_FLOAT_EQ(mix.amount.value, 0.5f);
   const auto& coat = std::get<CoatedMaterial>(scene.materials.at(mix.first).model);
   expect_near(coat.diffuse.value, glm::vec3(0.6f));
@@ -191,8 +191,8 @@ TEST_F(Pbrt, SumsOfReflectionsBecomeMixes) {
   expect_near(glass.reflectance.value, glm::vec3(0.0f));
   EXPECT_FLOAT_EQ(scene.materials.at(scene.shapes[0].material).opacity.value, 0.7f);
 
-  expect_near(material_of<CoatedMaterial>(scene, 1).diffuse.value, {.9f, .3f, .3f});
-  const auto& sheet = material_of<MixMaterial>(scene, 2);
+  expect_near(model_of<CoatedMaterial>(scene, 1).diffuse.value, {.9f, .3f, .3f});
+  const auto& sheet = model_of<MixMaterial>(scene, 2);
   EXPECT_FLOAT_EQ(sheet.amount.value, 0.4f);
   const auto& diffuse =
       std::get<DiffuseTransmissionMaterial>(scene.materials.at(sheet.first).model);
@@ -207,14 +207,14 @@ TEST_F(Pbrt, PrincipledMaterials) {
       "float spectrans" .2 "float clearcoat" 1 Shape "sphere"
     Material "coatedconductor" "rgb reflectance" [.25 .25 .25] "float interface.eta" 1
       "float conductor.roughness" .09 "float interface.roughness" .04 Shape "sphere")");
-  const auto& disney = material_of<PrincipledMaterial>(scene, 0);
+  const auto& disney = model_of<PrincipledMaterial>(scene, 0);
   EXPECT_EQ(disney.base_color, glm::vec3(.1f, .2f, .3f));
   EXPECT_FLOAT_EQ(disney.metallic.value, 0.7f);
   EXPECT_FLOAT_EQ(disney.alpha.value, 0.09f);
   EXPECT_FLOAT_EQ(disney.eta, 1.4f);
   EXPECT_FLOAT_EQ(disney.transmission.value, 0.2f);
   EXPECT_FLOAT_EQ(disney.coat.value, 0.25f);
-  const auto& coated = material_of<PrincipledMaterial>(scene, 1);
+  const auto& coated = model_of<PrincipledMaterial>(scene, 1);
   expect_near(coated.base_color.value, glm::vec3(0.25f), 1e-4f);
   EXPECT_FLOAT_EQ(coated.metallic.value, 1.0f);
   EXPECT_FLOAT_EQ(coated.alpha.value, 0.3f);
@@ -232,18 +232,18 @@ TEST_F(Pbrt, StandInsKeepTheColour) {
     Material "measured" "string filename" "a.bsdf" Shape "sphere"
     Material "substrate" "rgb Kd" [.2 .2 .2] "rgb Ks" [.04 .04 .04] Shape "sphere"
     Material "shinymetal" "rgb Ks" [.5 .5 .5] Shape "sphere")");
-  const glm::vec3 skin = material_of<CoatedMaterial>(scene, 0).diffuse.value;
+  const glm::vec3 skin = model_of<CoatedMaterial>(scene, 0).diffuse.value;
   EXPECT_GT(skin.x, skin.z);
   EXPECT_GT(skin.z, 0.5f);
   EXPECT_LT(skin.x, 1.0f);
-  EXPECT_EQ(material_of<CoatedMaterial>(scene, 1).diffuse, glm::vec3(.1f, .2f, .3f));
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 2).reflectance, glm::vec3(.4f, .3f, .2f));
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 3).reflectance, glm::vec3(0.5f));
-  const auto& substrate = material_of<CoatedMaterial>(scene, 4);
+  EXPECT_EQ(model_of<CoatedMaterial>(scene, 1).diffuse, glm::vec3(.1f, .2f, .3f));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 2).reflectance, glm::vec3(.4f, .3f, .2f));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 3).reflectance, glm::vec3(0.5f));
+  const auto& substrate = model_of<CoatedMaterial>(scene, 4);
   EXPECT_NEAR(substrate.eta, 1.5f, 1e-4f);  // ((1.5 - 1) / (1.5 + 1))^2 = 0.04
   expect_near(substrate.specular.value, glm::vec3(1.0f));
   EXPECT_TRUE(substrate.layered);
-  EXPECT_EQ(material_of<MixMaterial>(scene, 5).amount.value, 0.5f);
+  EXPECT_EQ(model_of<MixMaterial>(scene, 5).amount.value, 0.5f);
   EXPECT_EQ(scene.warnings.size(), 6u);
 }
 
@@ -258,12 +258,12 @@ TEST_F(Pbrt, MixesNameTheirParts) {
   const auto reflectance = [&](int material) {
     return std::get<DiffuseMaterial>(scene.materials.at(material).model).reflectance.value;
   };
-  const auto& v4 = material_of<MixMaterial>(scene, 0);
+  const auto& v4 = model_of<MixMaterial>(scene, 0);
   EXPECT_EQ(reflectance(v4.first), glm::vec3(1, 0, 0));
   EXPECT_EQ(reflectance(v4.second), glm::vec3(0, 0, 1));
   EXPECT_EQ(v4.amount.texture, 0);
   // v3's amount is the share of the first.
-  const auto& v3 = material_of<MixMaterial>(scene, 1);
+  const auto& v3 = model_of<MixMaterial>(scene, 1);
   EXPECT_EQ(reflectance(v3.second), glm::vec3(1, 0, 0));
   EXPECT_FLOAT_EQ(v3.amount.value, 0.25f);
   EXPECT_EQ(scene.materials.size(), 4u);
@@ -282,12 +282,12 @@ TEST_F(Pbrt, MediaInsideOfGlassAbsorb) {
     MediumInterface "" "fog" Shape "sphere"
     MediumInterface "fog" Shape "sphere"
     MediumInterface "green" "" NamedMaterial "grey" Shape "sphere")");
-  expect_near(material_of<DielectricMaterial>(scene, 0).absorption, {1.0f, 0.4f, 0.8f});
+  expect_near(model_of<DielectricMaterial>(scene, 0).absorption, {1.0f, 0.4f, 0.8f});
   EXPECT_EQ(scene.shapes[0].material, scene.shapes[1].material);
-  const auto& mix = material_of<MixMaterial>(scene, 2);
+  const auto& mix = model_of<MixMaterial>(scene, 2);
   const auto& part = std::get<DielectricMaterial>(scene.materials.at(mix.second).model);
   expect_near(part.absorption, {1.0f, 0.4f, 0.8f});
-  EXPECT_EQ(material_of<DielectricMaterial>(scene, 3).absorption, glm::vec3(0.0f));
+  EXPECT_EQ(model_of<DielectricMaterial>(scene, 3).absorption, glm::vec3(0.0f));
   EXPECT_EQ(scene.shapes[3].material, scene.shapes[4].material);
   EXPECT_EQ(scene.shapes[3].material, scene.shapes[5].material);
   EXPECT_EQ(scene.shapes[6].material, mix.first) << "no light gets into grey";
@@ -301,8 +301,8 @@ TEST_F(Pbrt, ScatteringAndPresetsWarn) {
     Material "glass" MakeNamedMedium "milk" "string type" "homogeneous" "string preset" "Milk"
     MakeNamedMedium "default" "string type" "homogeneous"
     MediumInterface "milk" "" Shape "sphere" MediumInterface "default" "" Shape "sphere")");
-  EXPECT_EQ(material_of<DielectricMaterial>(scene, 0).absorption, glm::vec3(0.0f));
-  expect_near(material_of<DielectricMaterial>(scene, 1).absorption, {.0011f, .0024f, .014f});
+  EXPECT_EQ(model_of<DielectricMaterial>(scene, 0).absorption, glm::vec3(0.0f));
+  expect_near(model_of<DielectricMaterial>(scene, 1).absorption, {.0011f, .0024f, .014f});
   EXPECT_TRUE(warns(scene, ":3: named presets of media"));
   EXPECT_TRUE(warns(scene, ":4: scattering inside of media is not supported"));
   EXPECT_EQ(scene.warnings.size(), 2u);
@@ -352,11 +352,7 @@ TEST_F(Pbrt, BrokenMaterialsSayWhereAndWhat) {
       {world + "Material \"diffuse\"\n\"texture reflectance\" [\"a\" \"b\"]" + triangle,
        ":3: \"texture reflectance\" must have one value"},
   };
-  for (const Case& c : cases) {
-    const std::string message = error_of(c.text);
-    EXPECT_NE(message.find(c.message), std::string::npos) << message << "\nexpected " << c.message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
+  for (const Case& c : cases) expect_one_line_with(error_of(c.text), c.message);
 }
 
 // Sixty mixes of twice the one before, in a medium: no more copies than materials.

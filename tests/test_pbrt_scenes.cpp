@@ -12,6 +12,8 @@
 namespace lockstep {
 namespace {
 
+namespace fs = std::filesystem;
+
 class SharedScene : public Pbrt {
  protected:
   SceneDescription read_shared(const std::string& name) const {
@@ -36,7 +38,7 @@ TEST_F(SharedScene, KillerooSimple) {
   EXPECT_EQ(scene.shapes[0].emission.value().radiance, glm::vec3(2000));
   EXPECT_EQ(mesh_of(scene, 3).triangles.size(), 33264u);
   EXPECT_EQ(mesh_of(scene, 4).triangles.size(), 33264u);
-  EXPECT_FALSE(material_of<CoatedMaterial>(scene, 3).layered);
+  EXPECT_FALSE(model_of<CoatedMaterial>(scene, 3).layered);
   expect_near(glm::vec3(scene.camera.camera_to_world[3]), {396.7348f, 54.7862f, 30.0f}, 1e-3f);
   EXPECT_TRUE(scene.warnings.empty());
 }
@@ -93,7 +95,7 @@ TEST_F(SharedScene, VeachMis) {
     EXPECT_FALSE(std::get<Sphere>(shape.geometry).emits_inwards);
   }
   EXPECT_EQ(lights, 3);
-  EXPECT_FLOAT_EQ(material_of<ConductorMaterial>(scene, 0).alpha.x, 0.01f);
+  EXPECT_FLOAT_EQ(model_of<ConductorMaterial>(scene, 0).alpha.x, 0.01f);
   EXPECT_EQ(scene.defaults.depth, 3);
   EXPECT_TRUE(scene.warnings.empty());
 }

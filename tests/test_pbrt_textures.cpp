@@ -20,16 +20,12 @@ class PbrtTextures : public Pbrt {
                 "\" " + rest + "\n" + use + " " + triangle);
   }
   static const ColorInput& reflectance(const SceneDescription& scene) {
-    return material_of<DiffuseMaterial>(scene).reflectance;
+    return model_of<DiffuseMaterial>(scene).reflectance;
   }
   static const FloatInput& sigma(const SceneDescription& scene) {
-    return material_of<DiffuseMaterial>(scene).sigma;
+    return model_of<DiffuseMaterial>(scene).sigma;
   }
 };
-
-const ImageTexture& image_of(const SceneDescription& scene, int texture = 0) {
-  return std::get<ImageTexture>(scene.textures.at(texture));
-}
 
 TEST_F(PbrtTextures, ImagesOfV4) {
   const SceneDescription scene = read_texture(
@@ -38,8 +34,8 @@ TEST_F(PbrtTextures, ImagesOfV4) {
   ASSERT_EQ(scene.textures.size(), 1u);
   EXPECT_EQ(reflectance(scene), ColorInput(glm::vec3(0.5f), 0));
   const ImageTexture& image = image_of(scene);
-  EXPECT_EQ(image.file, (folder_ / "wood.png").string());
-  EXPECT_EQ(image.where, (folder_ / "scene.pbrt").string() + ":2");
+  EXPECT_EQ(image.file, path("wood.png"));
+  EXPECT_EQ(image.where, path("scene.pbrt") + ":2");
   EXPECT_EQ(image.wrap_u, TextureWrap::Clamp);
   EXPECT_EQ(image.wrap_v, TextureWrap::Clamp);
   EXPECT_EQ(image.filter, TextureFilter::Trilinear);
@@ -142,7 +138,7 @@ TEST_F(PbrtTextures, NumbersHaveNamesOfTheirOwn) {
       "imagemap", "\"string filename\" \"f.png\" \"float scale\" 30",
       "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"c.png\"\n", "float");
   ASSERT_EQ(scene.textures.size(), 1u);
-  EXPECT_EQ(image_of(scene).file, (folder_ / "f.png").string());
+  EXPECT_EQ(image_of(scene).file, path("f.png"));
   EXPECT_FLOAT_EQ(sigma(scene).value, 30.0f);
   EXPECT_EQ(sigma(scene).texture, 0);
   EXPECT_EQ(sigma(scene).channel, -1);
@@ -162,9 +158,9 @@ TEST_F(PbrtTextures, NamesMeanWhatWasDeclaredBefore) {
     Material "diffuse" "texture reflectance" "t" Shape "sphere"
     Material "diffuse" "texture reflectance" "later" Shape "sphere"
     Texture "later" "spectrum" "constant" "rgb value" [0 1 0])");
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 0).reflectance, ColorInput(glm::vec3(1, 0, 0)));
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 1).reflectance, ColorInput(glm::vec3(.5f, 0, 0)));
-  EXPECT_EQ(material_of<DiffuseMaterial>(scene, 2).reflectance, ColorInput(glm::vec3(0, 1, 0)));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 0).reflectance, ColorInput(glm::vec3(1, 0, 0)));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 1).reflectance, ColorInput(glm::vec3(.5f, 0, 0)));
+  EXPECT_EQ(model_of<DiffuseMaterial>(scene, 2).reflectance, ColorInput(glm::vec3(0, 1, 0)));
 }
 
 TEST_F(PbrtTextures, UnusedOnesAreLeftOut) {
@@ -220,23 +216,23 @@ TEST_F(PbrtTextures, RoughnessFollowsTheRemapping) {
     return read_world(texture + material + "\n" + triangle);
   };
   const SceneDescription v4 = conductor("Material \"conductor\" \"texture roughness\" \"r\"");
-  const auto& root = material_of<ConductorMaterial>(v4);
+  const auto& root = model_of<ConductorMaterial>(v4);
   EXPECT_EQ(root.alpha, glm::vec2(1.0f));
   EXPECT_FLOAT_EQ(root.alpha_scale.value, 0.5f);
   EXPECT_FLOAT_EQ(root.alpha_scale.power, 0.5f);
   EXPECT_TRUE(v4.warnings.empty());
   const SceneDescription linear = conductor(
       "Material \"coateddiffuse\" \"texture roughness\" \"r\" \"bool remaproughness\" false");
-  EXPECT_FLOAT_EQ(material_of<CoatedMaterial>(linear).alpha_scale.value, 0.25f);
-  EXPECT_FLOAT_EQ(material_of<CoatedMaterial>(linear).alpha_scale.power, 1.0f);
+  EXPECT_FLOAT_EQ(model_of<CoatedMaterial>(linear).alpha_scale.value, 0.25f);
+  EXPECT_FLOAT_EQ(model_of<CoatedMaterial>(linear).alpha_scale.power, 1.0f);
   const SceneDescription v3 = conductor("Material \"plastic\" \"texture roughness\" \"r\"");
   EXPECT_TRUE(warns(v3, "power law"));
   // The power law against the polynomial, as plastic of constant roughness has it.
-  const FloatInput& law = material_of<CoatedMaterial>(v3).alpha_scale;
+  const FloatInput& law = model_of<CoatedMaterial>(v3).alpha_scale;
   for (const float roughness : {0.01f, 0.03f, 0.1f, 0.3f}) {
     const SceneDescription constant = read_world("Material \"plastic\" \"float roughness\" " +
                                                  std::to_string(roughness) + "\n" + triangle);
-    const float exact = material_of<CoatedMaterial>(constant).alpha;
+    const float exact = model_of<CoatedMaterial>(constant).alpha;
     const float close = law.value * std::pow(roughness / 0.25f, law.power);
     EXPECT_NEAR(close / exact, 1.0f, 0.15f) << roughness;
   }
@@ -269,7 +265,7 @@ TEST_F(PbrtTextures, NormalAndBumpMaps) {
     Material "matte" "texture bumpmap" "d" Shape "sphere")");
   const Material& normal = scene.materials.at(0);
   ASSERT_GE(normal.normal_map, 0);
-  EXPECT_EQ(image_of(scene, normal.normal_map).file, (folder_ / "n.png").string());
+  EXPECT_EQ(image_of(scene, normal.normal_map).file, path("n.png"));
   EXPECT_EQ(image_of(scene, normal.normal_map).encoding, TextureEncoding::Linear);
   EXPECT_EQ(image_of(scene, normal.normal_map).uv.v_row, glm::vec2(0, -1));
   for (int i : {1, 2}) {

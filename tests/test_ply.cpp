@@ -1,52 +1,23 @@
 // PLY files: each format, what is skipped, and what broken files give.
 #include "core/ply.h"
 
-#include "core/error.h"
+#include "tests/t_files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 namespace lockstep {
 namespace {
 
-namespace fs = std::filesystem;
-
-class Ply : public testing::Test {
+class Ply : public TestWithFiles {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::temp_directory_path() / ("lockstep_ply_" + std::to_string(getpid()) + test->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string write(const std::string& bytes) {
-    const fs::path path = folder_ / "mesh.ply";
-    std::ofstream(path, std::ios::binary) << bytes;
-    return path.string();
-  }
-  TriangleMesh read(const std::string& bytes) { return read_ply(write(bytes)); }
-
-  std::string error_of(const std::string& bytes) {
-    try {
-      read(bytes);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  fs::path folder_;
+  TriangleMesh read(const std::string& bytes) const { return read_ply(write("mesh.ply", bytes)); }
 };
 
 template <class T>
@@ -154,12 +125,8 @@ TEST_F(Ply, BrokenFilesSayWhereAndWhat) {
       {triangle_header + points + "-1 0 1 2\n", "mesh.ply:13: the length of list"},
       {triangle_header + points + "3 0 1\n", "the file ends before its last element"},
   };
-  for (const Case& c : cases) {
-    const std::string message = error_of(c.bytes);
-    EXPECT_NE(message.find(c.message), std::string::npos) << message << "\nexpected " << c.message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-  }
-  EXPECT_THROW(read_ply((folder_ / "absent.ply").string()), Error);
+  for (const Case& c : cases) expect_one_line_with(error_of([&] { read(c.bytes); }), c.message);
+  EXPECT_THROW(read_ply(path("absent.ply")), Error);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // Low-pass RMSE, SSIM and the spectrum of errors on images with known answers.
+#include "experiments/structural_error.h"
+
 #include "core/srgb.h"
 #include "experiments/display_image.h"
 #include "experiments/error_spectrum.h"
 #include "experiments/separable_filter.h"
 #include "experiments/squared_error.h"
-#include "experiments/structural_error.h"
 
 #include <gtest/gtest.h>
 

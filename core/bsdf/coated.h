@@ -3,12 +3,14 @@
 // Layered: the base sees light that has crossed the coat, T(wi) and T(wo), and light that the coat
 // sends back inside is reflected again and again, in closed form a / (1 - a r) with r the coat's
 // inner diffuse reflectance; 1/eta^2 is the change of solid angle at the interface. A base of
-// albedo 1 then returns all that enters.
+// albedo 1 then returns all that enters. A coat of some thickness dims what crosses it, and r; and
+// only the first reflections by the base may count: pbrt-v4's walk between the layers, summed up.
 #pragma once
 
 #include "core/bsdf.h"
 #include "core/fresnel.h"
 #include "core/microfacet.h"
+#include "core/simd_exp.h"
 #include "core/warp.h"
 
 namespace lockstep {
@@ -21,19 +23,41 @@ struct CoatedBsdf {
   V eta;
   V layered;            // 1 or 0
   V inner_reflectance;  // of diffuse light inside, at the coat
+  V thickness;
+  V reflections;  // by the base that count; 0: all
 };
 
 template <class I>
 LOCKSTEP_INLINE CoatedBsdf<FloatOf<I>> load_coated(const MaterialTable& t, I index) {
   const auto a = material_rows(t, index, 0), b = material_rows(t, index, 4);
   const auto c = material_rows(t, index, 8);
-  return {{a.x, a.y, a.z}, {a.w, b.x, b.y}, {{b.z, b.z}}, b.w, c.x, c.y};
+  const auto alpha = max(b.z, FloatOf<I>(smoothest_alpha));
+  return {{a.x, a.y, a.z}, {a.w, b.x, b.y}, {{alpha, alpha}}, b.w, c.x, c.y, c.z, c.w};
 }
 
 // Share of light that gets through the coat at this angle; 1 where coat and base are just added.
 template <class V>
 LOCKSTEP_INLINE V transmittance(const CoatedBsdf<V>& bsdf, V cos_i) {
-  return V(1.0f) - bsdf.layered * fresnel_dielectric(cos_i, bsdf.eta);
+  const V entered = V(1.0f) - bsdf.layered * fresnel_dielectric(cos_i, bsdf.eta);
+  if (none(bsdf.thickness > V(0.0f))) return entered;
+  const V sin2 = fma(-cos_i, cos_i, V(1.0f)) / (bsdf.eta * bsdf.eta);
+  const V cos_inside = sqrt(max(V(1.0f) - sin2, V(1e-6f)));
+  return entered * exp(-(bsdf.thickness / cos_inside));
+}
+
+// 1 + x + x^2 + ..., as many terms as count, for x below 1.
+template <class V>
+LOCKSTEP_INLINE V sum_of_reflections(const CoatedBsdf<V>& bsdf, V x) {
+  const V all = V(1.0f) / (V(1.0f) - x);
+  if (none(bsdf.reflections > V(0.0f))) return all;
+  // x^reflections: above 31 nothing is left of it.
+  const auto n = to_int(min(bsdf.reflections, V(31.0f)));
+  V power(1.0f), square = x;
+  for (int i = 0; i < 5; ++i) {
+    power = select((n & IntOf<V>(1 << i)) != IntOf<V>(0), power * square, power);
+    square = square * square;
+  }
+  return select(bsdf.reflections > V(0.0f), (V(1.0f) - power) * all, all);
 }
 
 // f / T(wi) of the base.
@@ -42,9 +66,9 @@ LOCKSTEP_INLINE Vec3<V> base_reflectance(const CoatedBsdf<V>& bsdf, V cos_o) {
   const V solid_angle = fma(bsdf.layered, V(1.0f) / (bsdf.eta * bsdf.eta) - V(1.0f), V(1.0f));
   const V scale = solid_angle * transmittance(bsdf, cos_o);
   const V r = bsdf.layered * bsdf.inner_reflectance;
-  return {bsdf.diffuse.x * scale / (V(1.0f) - bsdf.diffuse.x * r),
-          bsdf.diffuse.y * scale / (V(1.0f) - bsdf.diffuse.y * r),
-          bsdf.diffuse.z * scale / (V(1.0f) - bsdf.diffuse.z * r)};
+  return {bsdf.diffuse.x * scale * sum_of_reflections(bsdf, bsdf.diffuse.x * r),
+          bsdf.diffuse.y * scale * sum_of_reflections(bsdf, bsdf.diffuse.y * r),
+          bsdf.diffuse.z * scale * sum_of_reflections(bsdf, bsdf.diffuse.z * r)};
 }
 
 // Probability of sampling the coat, by what each layer reflects at this angle.

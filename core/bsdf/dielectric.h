@@ -139,8 +139,8 @@ LOCKSTEP_INLINE Vec3<V> facet_share(const DielectricBsdf<V>& bsdf, V reflectance
 }
 
 template <class V>
-LOCKSTEP_INLINE BsdfValue<V> eval(const DielectricBsdf<V>& bsdf, const Vec3<V>& to_viewer,
-                                  const Vec3<V>& to_light) {
+[[gnu::noinline]] BsdfValue<V> eval(const DielectricBsdf<V>& bsdf, const Vec3<V>& to_viewer,
+                                    const Vec3<V>& to_light) {
   const MaskOf<V> delta = is_delta(bsdf);
   if (all(delta)) return {Vec3<V>(V(0.0f)), V(0.0f)};
   const Ggx<V> ggx = at_least_smoothest(bsdf.ggx);
@@ -163,8 +163,8 @@ LOCKSTEP_INLINE BsdfValue<V> eval(const DielectricBsdf<V>& bsdf, const Vec3<V>& 
 }
 
 template <class V>
-LOCKSTEP_INLINE ScatterSample<V> sample(const DielectricBsdf<V>& bsdf, const Vec3<V>& to_viewer,
-                                        V lobe, Vec2<V> u) {
+[[gnu::noinline]] ScatterSample<V> sample(const DielectricBsdf<V>& bsdf, const Vec3<V>& to_viewer,
+                                          V lobe, Vec2<V> u) {
   const MaskOf<V> delta = is_delta(bsdf);
   const Ggx<V> ggx = at_least_smoothest(bsdf.ggx);
   const BoundarySide<V> side = boundary_side(to_viewer, bsdf.eta, !bsdf.thin);

@@ -104,8 +104,8 @@ LOCKSTEP_INLINE void choose_lobes(const PrincipledBsdf<V>& bsdf, V r, Principled
 }
 
 template <class V>
-LOCKSTEP_INLINE PrincipledView<V> principled_view(const PrincipledBsdf<V>& bsdf,
-                                                  const Vec3<V>& to_viewer) {
+[[gnu::noinline]] PrincipledView<V> principled_view(const PrincipledBsdf<V>& bsdf,
+                                                    const Vec3<V>& to_viewer) {
   PrincipledView<V> view;
   const V smoothest(smoothest_alpha);
   view.dielectric = V(1.0f) - bsdf.metallic;
@@ -176,8 +176,8 @@ LOCKSTEP_INLINE BsdfValue<V> eval_diffuse(const PrincipledBsdf<V>& bsdf,
 
 // wi is turned with wo, and lies below (z < 0) where light passes.
 template <class V>
-LOCKSTEP_INLINE BsdfValue<V> eval(const PrincipledBsdf<V>& bsdf, const PrincipledView<V>& view,
-                                  const Vec3<V>& wi) {
+[[gnu::noinline]] BsdfValue<V> eval(const PrincipledBsdf<V>& bsdf, const PrincipledView<V>& view,
+                                    const Vec3<V>& wi) {
   const Vec3<V>& wo = view.side.wo;
   const V eta = view.side.eta, cos_i = abs(wi.z);
   const MaskOf<V> passed = wi.z < V(0.0f), refracted = passed & view.refracts;

@@ -44,9 +44,6 @@ LOCKSTEP_INLINE V radiance_scale(const ScatterSample<V>& s) {
 template <class Bsdf>
 inline constexpr bool transmits = false;
 
-// Below this roughness a lobe is taken as perfectly smooth, or kept at it where it may not be.
-inline constexpr float smoothest_alpha = 1e-3f;
-
 template <class V>
 LOCKSTEP_INLINE MaskOf<V> is_smooth(const Ggx<V>& ggx) {
   return max(ggx.alpha.x, ggx.alpha.y) < V(smoothest_alpha);

@@ -1,9 +1,8 @@
 // Errors and warnings about a glTF file: "file: element: what". JSON has no lines worth naming.
 #pragma once
 
-#include "core/error.h"
+#include "core/location.h"
 
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,9 +12,7 @@ namespace lockstep::gltf {
 // `text` on one line and of bounded length, whatever strings of the file it quotes.
 inline std::string printable(std::string text) {
   constexpr size_t longest = 400;
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
+  text = lockstep::printable(std::move(text), ' ');
   while (text.ends_with(' ')) text.pop_back();
   if (text.size() > longest) text = text.substr(0, longest) + " ...";
   return text;
@@ -31,17 +28,15 @@ class Warnings {
   explicit Warnings(std::string file) : file_(std::move(file)) {}
 
   void add(const std::string& element, const std::string& message) {
-    if (!known_.insert(message).second) return;
-    lines_.push_back(file_ + ": " +
-                     printable(element.empty() ? message : element + ": " + message));
+    const std::string what = element.empty() ? message : element + ": " + message;
+    once_.add_line(message, file_ + ": " + printable(what));
   }
 
-  const std::vector<std::string>& lines() const { return lines_; }
+  const std::vector<std::string>& lines() const { return once_.lines(); }
 
  private:
   std::string file_;
-  std::set<std::string> known_;
-  std::vector<std::string> lines_;
+  lockstep::Warnings once_;
 };
 
 }  // namespace lockstep::gltf

@@ -3,6 +3,7 @@
 #include "core/fresnel.h"
 #include "core/mitsuba/bsdfs.h"
 #include "core/mitsuba/colors.h"
+#include "core/mitsuba/named_indices.h"
 
 #include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
@@ -31,18 +32,6 @@ Material opaque(const BsdfCall& call, MaterialModel model) {
   Material material(std::move(model));
   material.two_sided = call.two_sided;
   return material;
-}
-
-// Of diffuse light inside, at the coat: 1 - (1 - r) / eta^2, with r the cosine-weighted mean of
-// Fresnel's formula outside.
-float inner_reflectance(float eta) {
-  constexpr int steps = 512;
-  double outside = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const float cos_i = (float(i) + 0.5f) / steps;
-    outside += 2.0 * double(cos_i * fresnel_dielectric(cos_i, eta)) / steps;
-  }
-  return float(1.0 - (1.0 - outside) / (double(eta) * double(eta)));
 }
 
 // Unless "nonlinear", Mitsuba divides the base's albedo a by 1 - r where the layered coat here

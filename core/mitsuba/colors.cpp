@@ -45,7 +45,11 @@ glm::vec3 from_pairs(const Element& e, const std::vector<glm::dvec2>& samples, C
       fail(e.where(), e.shown() + ": the wavelengths do not increase");
     }
   }
-  return spectrum_to_rgb(samples, use);
+  const auto zero_beyond = [&](double w) {
+    const bool inside = samples.size() > 1 && w >= samples.front().x && w <= samples.back().x;
+    return inside ? interpolate(samples, w) : 0.0;
+  };
+  return spectrum_to_rgb(zero_beyond, use);
 }
 
 // One value, or "wavelength:value" many times.
@@ -91,7 +95,8 @@ glm::vec3 black_body(const Element& e, double kelvin, double scale) {
   if (!(kelvin > 0.0 && kelvin <= 1e6)) {
     fail(e.where(), e.shown() + " needs a temperature between 0 and a million K");
   }
-  return float(scale) * black_body_to_rgb(kelvin);
+  const auto radiance = [&](double w) { return black_body_radiance(w, kelvin); };
+  return float(scale) * spectrum_to_rgb(radiance, ColorUse::Light);
 }
 
 // <blackbody temperature="5000K" scale="1"/>

@@ -1,8 +1,8 @@
 // Parameters that are colours, or numbers that a texture may vary.
 #pragma once
 
-#include "core/mitsuba/spectrum.h"
 #include "core/mitsuba/state.h"
+#include "core/spectrum.h"
 
 #include <string_view>
 

@@ -2,7 +2,7 @@
 // place, ids collected and every tag's line known.
 #pragma once
 
-#include "core/pbrt/location.h"
+#include "core/location.h"
 
 #include <pugixml.hpp>
 
@@ -13,10 +13,6 @@
 #include <vector>
 
 namespace lockstep::mitsuba {
-
-using pbrt::fail;
-using pbrt::Location;
-using pbrt::Warnings;
 
 // Names as they are compared: 0.x writes toWorld and intIOR, 2 and 3 write to_world and int_ior.
 std::string plain(std::string_view name);

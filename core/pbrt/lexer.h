@@ -1,7 +1,7 @@
 // Cuts a pbrt file into tokens: words, quoted strings, numbers and brackets; '#' starts a comment.
 #pragma once
 
-#include "core/pbrt/location.h"
+#include "core/location.h"
 
 #include <string>
 #include <string_view>

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace lockstep::pbrt {
@@ -41,9 +42,18 @@ FloatInput mean(const Inputs& in, const ColorInput& color) {
   return number;
 }
 
+// The layers' walk where a stand-in has none: what is between them is taken to be empty.
 void ignore_layers(const Inputs& in) {
-  // The space between the layers is taken to be empty, as it is unless "albedo" is given.
   in.set().ignore({"thickness", "maxdepth", "nsamples", "g"});
+}
+
+// What is between the layers absorbs; with "albedo" it would scatter, too. Of each two steps of a
+// walk one is a reflection by the base.
+void read_layers(const Inputs& in, CoatedMaterial& m) {
+  m.thickness = std::clamp(in.constant("thickness", 0.01f), 0.0f, 100.0f);
+  m.reflections = std::clamp(in.set().get_int("maxdepth", 10), 1, 1000) / 2;
+  m.reflections = std::max(m.reflections, 1);
+  in.set().ignore({"nsamples", "g"});
 }
 
 }  // namespace
@@ -87,7 +97,7 @@ MadeMaterial coated_diffuse(const Inputs& in) {
     in.warn("eta must be above 1; 1.5 is used");
     m.eta = 1.5f;
   }
-  ignore_layers(in);
+  read_layers(in, m);
   return m;
 }
 

@@ -1,8 +1,8 @@
 // The typed, named value lists that follow most directives: "float fov" [39].
 #pragma once
 
+#include "core/location.h"
 #include "core/pbrt/lexer.h"
-#include "core/pbrt/location.h"
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/pbrt/library.h"
+#include "core/spectrum.h"
 
 #include <glm/vec3.hpp>
 
@@ -10,14 +11,9 @@
 
 namespace lockstep::pbrt {
 
-// What a colour stands for decides what a spectrum's RGB is relative to.
-enum class ColorUse {
-  Reflectance,  // also indices of refraction: a constant spectrum is grey
-  Light,        // a spectrum or black body gives its chromaticity, with luminance 1 as in pbrt-v4
-};
-
 // The parameter `name` as a colour; nothing where it is absent or not known (with a warning). A
-// spectrum may be a list of samples, a name or a file of samples; for textures see Inputs.
+// spectrum may be a list of samples, a name or a file of samples, and gives a light its
+// chromaticity with luminance 1, as in pbrt-v4; for textures see Inputs.
 std::optional<glm::vec3> find_color(const ParameterSet& parameters, std::string_view name,
                                     ColorUse use, Library& library);
 

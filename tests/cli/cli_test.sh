@@ -37,7 +37,7 @@ small="--resolution 32x24 --spp 4 --quiet"
 # Help and lists.
 expect 0 'lockstep [0-9]+\.[0-9]+' --version
 expect 0 'compare' --help
-for command in render compare demo metrics scenes samplers; do
+for command in render compare demo metrics info scenes samplers; do
   expect 0 'Usage: lockstep' "$command" --help
 done
 expect 0 '^cornell ' scenes
@@ -65,9 +65,20 @@ expect 2 'samplers' compare cornell -o out
 expect 2 'twice' compare cornell --samplers random,random -o out
 expect 2 'spp' compare cornell --samplers random --spp 4,x -o out
 expect 2 'TEST' metrics a.exr
+expect 2 'SCENE' info
+expect 2 'camera.*origin takes three numbers' render cornell -o a.exr --camera origin=1,2
+expect 2 "camera.*no 'eye'" profile cornell -o prof --camera eye=0,0,0
+expect 2 'camera.*fov' compare cornell --samplers random --camera fov=0 -o out
+expect 2 'target 0,1,3.6 is where the camera is' render cornell -o a.exr --camera target=0,1,3.6
+expect 2 'environment.*0 or more' render cornell -o a.exr --environment -1,0,0
+expect 2 'environment-scale' render cornell -o a.exr --environment-scale -1
+expect 2 'no environment' render cornell -o a.exr --environment-scale 2
 
 # Failures while running: status 1, before anything is rendered.
 expect 1 'nosuch.pbrt' render nosuch.pbrt -o a.exr
+expect 1 'nosuch.pbrt' info nosuch.pbrt
+expect 1 'nosuch.json' render cornell -o a.exr --camera nosuch.json
+expect 1 'nosuch.exr' render cornell -o a.exr --environment nosuch.exr
 expect 1 'missing' render cornell -o missing/a.exr
 expect 1 'missing' render cornell -o a.exr --stats missing/a.json
 expect 1 'a.exr' metrics a.exr b.exr
@@ -93,6 +104,28 @@ for how in '--traversal single' '--traversal packet8-coherent' '--traversal stre
   expect 0 '^rmse +0$' metrics b.exr d.exr
 done
 expect 2 'packet4' render cornell -o d.exr --traversal packet3
+
+# What a scene consists of.
+expect 0 '^  triangles +36  72 vertices$' info cornell
+expect 0 '^  as --camera +origin=0,1,3.6:target=0,1,' info cornell
+expect 0 '"triangles": 36,' info cornell --json
+
+# Another camera and environment. The scene's own camera gives the scene's image.
+own=$("$program" info cornell | sed -n 's/^  as --camera *//p')
+echo '{"origin": [0, 1, 3.6], "target": [0, 1, 0]}' >view.json
+for camera in "$own" view.json; do
+  expect 0 '' render cornell -o d.exr --resolution 32x24 --spp 2 --quiet --camera "$camera"
+  expect 0 '^rmse +(0|[0-9.]+e-0[3-9]|0\.00[0-9]+)$' metrics b.exr d.exr
+done
+expect 0 '' render cornell -o d.exr $small --camera origin=0.5,1,3:fov=30 --stats d.json \
+  --environment 0.5,0.5,1 --environment-scale 0.5 --resume
+has d.json '"camera": "origin=0.5,1,3:fov=30"'
+has d.json '"environment": "0.5,0.5,1"'
+has d.json '"environment_scale": "0.5"'
+grep -aq 'origin=0.5,1,3:fov=30' d.exr || fail "the image's header lacks its camera"
+for change in '--camera origin=0.5,1,3:fov=31' '--environment none'; do
+  expect 1 'other settings|d.exr.state' render cornell -o d.exr $small --resume $change
+done
 
 # A profile.
 expect 2 'no weight' profile cornell -o prof --sampler owen

@@ -1,57 +1,13 @@
-#include "core/mitsuba/spectrum.h"
+#include "core/mitsuba/named_indices.h"
 
 #include "core/pbrt/named_spectra.h"
 
-#include <glm/common.hpp>
-
 #include <array>
-#include <cmath>
 #include <string>
 #include <utility>
 
 namespace lockstep::mitsuba {
 namespace {
-
-constexpr double first_wavelength = 380.0, last_wavelength = 780.0, step = 5.0;  // nm
-
-// Wyman, Sloan and Shirley 2013, "Simple Analytic Approximations to the CIE XYZ Color Matching
-// Functions", the multi-lobe fit.
-glm::dvec3 color_matching(double wavelength) {
-  const auto lobe = [&](double height, double center, double below, double above) {
-    const double t = (wavelength - center) / (wavelength < center ? below : above);
-    return height * std::exp(-0.5 * t * t);
-  };
-  return {lobe(1.056, 599.8, 37.9, 31.0) + lobe(0.362, 442.0, 16.0, 26.7) +
-              lobe(-0.065, 501.1, 20.4, 26.2),
-          lobe(0.821, 568.8, 46.9, 40.5) + lobe(0.286, 530.9, 16.3, 31.1),
-          lobe(1.217, 437.0, 11.8, 36.0) + lobe(0.681, 459.0, 26.0, 13.8)};
-}
-
-glm::dvec3 xyz_to_rgb(glm::dvec3 xyz) {
-  return {3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
-          -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
-          0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z};
-}
-
-template <class Spectrum>
-glm::dvec3 integrate_rgb(const Spectrum& spectrum) {
-  glm::dvec3 xyz(0.0);
-  double luminance_of_one = 0.0;
-  for (double w = first_wavelength; w <= last_wavelength; w += step) {
-    xyz += spectrum(w) * color_matching(w);
-    luminance_of_one += color_matching(w).y;
-  }
-  return xyz_to_rgb(xyz / luminance_of_one);
-}
-
-double interpolate(const std::vector<glm::dvec2>& samples, double wavelength) {
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    const glm::dvec2 a = samples[i - 1], b = samples[i];
-    if (wavelength < a.x || wavelength > b.x) continue;
-    return a.y + (wavelength - a.x) / (b.x - a.x) * (b.y - a.y);
-  }
-  return 0.0;
-}
 
 struct Metal {
   std::string_view name;
@@ -59,7 +15,7 @@ struct Metal {
 };
 
 // Beside those that pbrt names: the tables of Palik's Handbook of Optical Constants of Solids that
-// Mitsuba ships, integrated as above.
+// Mitsuba ships, as spectrum_to_rgb() gives them.
 constexpr std::array<Metal, 15> metals{{
     {"Be", {{4.168692f, 3.190650f, 2.780358f}, {3.820497f, 3.015017f, 2.865107f}}},
     {"Cr", {{4.345994f, 2.925910f, 1.652079f}, {5.186901f, 4.237704f, 3.750385f}}},
@@ -106,24 +62,6 @@ constexpr std::array<std::pair<std::string_view, float>, 24> dielectrics{{
 }};
 
 }  // namespace
-
-glm::vec3 spectrum_to_rgb(const std::vector<glm::dvec2>& samples, ColorUse use) {
-  glm::dvec3 rgb = integrate_rgb([&](double w) { return interpolate(samples, w); });
-  if (use == ColorUse::Reflectance) rgb /= integrate_rgb([](double) { return 1.0; });
-  return glm::vec3(glm::max(rgb, glm::dvec3(0.0)));
-}
-
-glm::vec3 black_body_to_rgb(double kelvin) {
-  constexpr double first_radiation_constant = 1.191042972e-16;  // W m^2/sr
-  constexpr double second_radiation_constant = 1.438776877e-2;  // m K
-  const auto planck = [&](double nm) {
-    const double w = nm * 1e-9;
-    const double per_metre = first_radiation_constant / std::pow(w, 5.0) /
-                             std::expm1(second_radiation_constant / (w * kelvin));
-    return 1e-9 * per_metre;
-  };
-  return glm::vec3(glm::max(integrate_rgb(planck), glm::dvec3(0.0)));
-}
 
 std::optional<MetalIndices> metal_indices(std::string_view name) {
   for (const Metal& metal : metals) {

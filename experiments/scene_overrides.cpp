@@ -1,0 +1,115 @@
+#include "experiments/scene_overrides.h"
+
+#include "core/error.h"
+#include "core/read_scene.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+
+namespace lockstep {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = EnvironmentOverride::Kind;
+
+// Three numbers between commas, whatever they are.
+std::optional<glm::vec3> parse_color(const std::string& text) {
+  glm::vec3 color(0.0f);
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (int i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return {};
+    const auto [next, error] = std::from_chars(at, end, color[i]);
+    if (error != std::errc()) return {};
+    at = next;
+  }
+  if (at != end) return {};
+  return color;
+}
+
+Environment parse_replacement(const std::string& text) {
+  if (const auto color = parse_color(text)) {
+    for (const float v : {color->x, color->y, color->z}) {
+      if (v >= 0.0f && std::isfinite(v)) continue;
+      throw UsageError(fmt::format("--environment: '{}': radiance is 0 or more", text));
+    }
+    return Environment(*color);
+  }
+  std::error_code ignored;
+  if (!fs::is_regular_file(text, ignored)) {
+    throw Error(fmt::format(
+        "--environment: {}: no such file; name an image such as sky.exr, or give R,G,B or none",
+        text));
+  }
+  Environment environment;
+  environment.mapping = Environment::Mapping::LatLong;
+  environment.file = text;
+  environment.where = "--environment";
+  return environment;
+}
+
+// What readers say of the default that the override has replaced.
+void drop_warnings(SceneDescription& scene, std::string_view ending) {
+  std::erase_if(scene.warnings, [&](const std::string& w) { return w.ends_with(ending); });
+}
+
+}  // namespace
+
+EnvironmentOverride parse_environment(const std::string& text, std::optional<float> scale) {
+  EnvironmentOverride change;
+  change.scale = scale;
+  if (text.empty()) return change;
+  change.kind = text == "none" ? Kind::Remove : Kind::Replace;
+  if (change.kind == Kind::Replace) change.environment = parse_replacement(text);
+  if (change.kind == Kind::Remove && scale) {
+    throw UsageError("--environment-scale: there is nothing to scale with --environment none");
+  }
+  return change;
+}
+
+std::string to_string(const EnvironmentOverride& change) {
+  if (change.kind == Kind::Keep) return "";
+  if (change.kind == Kind::Remove) return "none";
+  const Environment& e = change.environment;
+  if (e.mapping != Environment::Mapping::Constant) return e.file;
+  return fmt::format("{},{},{}", e.radiance.x, e.radiance.y, e.radiance.z);
+}
+
+void apply_override(const EnvironmentOverride& change, std::optional<Environment>& environment) {
+  if (change.kind == Kind::Remove) environment.reset();
+  if (change.kind == Kind::Replace) environment = change.environment;
+  if (!change.scale) return;
+  if (!environment) {
+    throw UsageError("--environment-scale: the scene has no environment; add --environment");
+  }
+  environment->radiance *= *change.scale;
+}
+
+Metadata override_metadata(const SceneOverrides& overrides) {
+  Metadata metadata;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) metadata[key] = value;
+  };
+  add("camera", to_string(overrides.camera));
+  add("environment", to_string(overrides.environment));
+  const std::optional<float> scale = overrides.environment.scale;
+  add("environment_scale", scale ? fmt::format("{}", *scale) : "");
+  return metadata;
+}
+
+SceneDescription read_scene(const std::string& name, const SceneOverrides& overrides) {
+  SceneDescription scene = read_scene(name);
+  apply_override(overrides.camera, scene.camera);
+  apply_override(overrides.environment, scene.environment);
+  if (overrides.camera.origin) drop_warnings(scene, "; one that frames all is used");
+  if (overrides.environment.kind != Kind::Keep) {
+    drop_warnings(scene, "; an environment of radiance 1 is used");
+  }
+  return scene;
+}
+
+}  // namespace lockstep
