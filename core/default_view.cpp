@@ -1,5 +1,6 @@
 #include "core/default_view.h"
 
+#include "core/bounds.h"
 #include "core/builtin/parts.h"
 
 #include <glm/common.hpp>
@@ -12,46 +13,6 @@
 
 namespace lockstep {
 namespace {
-
-struct Bounds {
-  glm::vec3 lo{std::numeric_limits<float>::max()}, hi{-std::numeric_limits<float>::max()};
-
-  bool empty() const { return lo.x > hi.x; }
-  void grow(glm::vec3 p, float radius = 0.0f) {
-    lo = glm::min(lo, p - radius);
-    hi = glm::max(hi, p + radius);
-  }
-};
-
-void grow(Bounds& bounds, const std::vector<Shape>& shapes) {
-  for (const Shape& shape : shapes) {
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-      for (const glm::vec3 p : mesh->positions) bounds.grow(p);
-    } else if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-      bounds.grow(sphere->center, sphere->radius);
-    } else if (const auto* disk = std::get_if<Disk>(&shape.geometry)) {
-      bounds.grow(disk->center, disk->radius);
-    }
-  }
-}
-
-Bounds bounds_of(const SceneDescription& scene) {
-  Bounds all;
-  grow(all, scene.shapes);
-  std::vector<Bounds> objects(scene.objects.size());
-  for (std::size_t i = 0; i < objects.size(); ++i) grow(objects[i], scene.objects[i].shapes);
-  for (const Instance& instance : scene.instances) {
-    const Bounds& object = objects[size_t(instance.object)];
-    if (object.empty()) continue;
-    for (int corner = 0; corner < 8; ++corner) {
-      const glm::vec3 p(corner & 1 ? object.hi.x : object.lo.x,
-                        corner & 2 ? object.hi.y : object.lo.y,
-                        corner & 4 ? object.hi.z : object.lo.z);
-      all.grow(glm::vec3(instance.to_world * glm::vec4(p, 1.0f)));
-    }
-  }
-  return all;
-}
 
 bool has_light(const SceneDescription& scene) {
   return scene.environment || !scene.lights.empty() ||

@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-// Afterwards the scene holds meshes and spheres alone: disks become meshes of the same area, and
-// each instance gets its own copy of its object's shapes.
+// Afterwards the scene holds meshes and spheres alone, its objects meshes, and instances can be
+// inverted: disks become meshes of the same area, and what is placed only once becomes a shape.
 void expand_shapes(SceneDescription& scene);
 
 }  // namespace lockstep

@@ -5,6 +5,7 @@ namespace lockstep {
 std::vector<std::string> feature_names(FeatureMask set) {
   constexpr const char* names[feature_count] = {"smooth-normals",
                                                 "spheres",
+                                                "instances",
                                                 "diffuse",
                                                 "conductor",
                                                 "coated",

@@ -12,6 +12,7 @@ namespace lockstep {
 enum class Feature : unsigned {
   SmoothNormals,
   Spheres,
+  Instances,
   Diffuse,
   Conductor,
   Coated,
@@ -40,7 +41,7 @@ enum class Feature : unsigned {
   Lens,
   Orthographic,
 };
-inline constexpr unsigned feature_count = 29;
+inline constexpr unsigned feature_count = 30;
 
 using FeatureMask = std::uint32_t;
 inline constexpr FeatureMask all_features = (1u << feature_count) - 1u;

@@ -3,6 +3,8 @@
 #include "core/coincidence.h"
 #include "core/fingerprint.h"
 
+#include <glm/gtc/matrix_inverse.hpp>
+
 #include <algorithm>
 #include <array>
 
@@ -10,6 +12,22 @@ namespace lockstep {
 namespace {
 
 void append(std::vector<float>& out, glm::vec3 v) { out.insert(out.end(), {v.x, v.y, v.z}); }
+
+// The scene's own shapes, then each object's: in the order of their numbers.
+template <class F>
+void for_each_shape(const SceneDescription& description, const F& f) {
+  for (const Shape& shape : description.shapes) f(shape);
+  for (const ObjectDescription& object : description.objects) {
+    for (const Shape& shape : object.shapes) f(shape);
+  }
+}
+
+template <class F>
+void for_each_mesh(const SceneDescription& description, const F& f) {
+  for_each_shape(description, [&](const Shape& shape) {
+    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) f(*mesh);
+  });
+}
 
 void append_mesh(FlatScene& flat, const TriangleMesh& mesh) {
   const auto first_vertex = std::int32_t(flat.positions.size() / 3);
@@ -41,11 +59,40 @@ void append_shape(FlatScene& flat, const Shape& shape, bool one_sided) {
                             {mesh ? g.first_triangle : 0, shape.material, -1, flags});
 }
 
+void append_instance_row(const glm::mat4& to_world, FlatScene& flat) {
+  const glm::mat3 linear(to_world);
+  const glm::mat3 normals = glm::inverseTranspose(linear);
+  const float side = glm::determinant(linear) < 0.0f ? -1.0f : 1.0f;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      flat.instance_rows.push_back(to_world[column][row]);
+    }
+  }
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) flat.instance_rows.push_back(normals[column][row]);
+    flat.instance_rows.push_back(row == 0 ? side : 0.0f);
+  }
+}
+
+void append_instances(const SceneDescription& description, FlatScene& flat) {
+  auto first = std::uint32_t(description.shapes.size());
+  for (const ObjectDescription& object : description.objects) {
+    const auto count = std::uint32_t(object.shapes.size());
+    flat.objects.push_back({first, count});
+    first += count;
+  }
+  append_instance_row(glm::mat4(1.0f), flat);
+  for (const Instance& instance : description.instances) {
+    flat.instances.push_back({instance.object, instance.to_world});
+    append_instance_row(instance.to_world, flat);
+  }
+}
+
 // What hits on the shapes need: of materials that no shape has, nothing.
 FeatureMask material_features_of(const SceneDescription& description, const FlatScene& flat) {
   std::vector<bool> used(description.materials.size(), false);
   std::vector<int> open;
-  for (const Shape& shape : description.shapes) open.push_back(shape.material);
+  for_each_shape(description, [&](const Shape& shape) { open.push_back(shape.material); });
   FeatureMask set = 0;
   while (!open.empty()) {
     const auto material = std::size_t(open.back());
@@ -67,6 +114,7 @@ FeatureMask geometry_features(const FlatScene& flat) {
     if (flags & geometry_is_sphere) set |= bit(Feature::Spheres);
     if (flags & geometry_is_smooth) set |= bit(Feature::SmoothNormals);
   }
+  if (!flat.instances.empty()) set |= bit(Feature::Instances);
   return set;
 }
 
@@ -79,13 +127,11 @@ FeatureMask light_features(const FlatScene& flat) {
 // Normals for every vertex as soon as one mesh has them; the others' stay unused.
 void append_normals(FlatScene& flat, const SceneDescription& description) {
   if (!(flat.features & bit(Feature::SmoothNormals))) return;
-  for (const Shape& shape : description.shapes) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-    if (!mesh) continue;
-    for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
-      append(flat.normals, mesh->normals.empty() ? glm::vec3(0.0f, 0.0f, 1.0f) : mesh->normals[i]);
+  for_each_mesh(description, [&](const TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      append(flat.normals, mesh.normals.empty() ? glm::vec3(0.0f, 0.0f, 1.0f) : mesh.normals[i]);
     }
-  }
+  });
 }
 
 // Of every vertex as soon as anything reads them.
@@ -93,14 +139,12 @@ void append_uvs(FlatScene& flat, const SceneDescription& description) {
   constexpr FeatureMask readers =
       uv_features | feature_set(Feature::Opacity, Feature::TexturedLights);
   if (!(flat.features & readers)) return;
-  for (const Shape& shape : description.shapes) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-    if (!mesh) continue;
-    for (std::size_t i = 0; i < mesh->positions.size(); ++i) {
-      const glm::vec2 uv = mesh->uvs.empty() ? glm::vec2(0.0f) : mesh->uvs[i];
+  for_each_mesh(description, [&](const TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[i];
       flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
     }
-  }
+  });
 }
 
 // Embree reads 16 bytes per vertex, kernels rows of four values. Lanes on spheres look up the first
@@ -117,13 +161,11 @@ void pad(FlatScene& flat) {
 void reserve(const SceneDescription& description, FlatScene& flat) {
   std::size_t vertices = 0, triangles = 0;
   bool smooth = false;
-  for (const Shape& shape : description.shapes) {
-    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-    if (!mesh) continue;
-    vertices += mesh->positions.size();
-    triangles += mesh->triangles.size();
-    smooth = smooth || !mesh->normals.empty();
-  }
+  for_each_mesh(description, [&](const TriangleMesh& mesh) {
+    vertices += mesh.positions.size();
+    triangles += mesh.triangles.size();
+    smooth = smooth || !mesh.normals.empty();
+  });
   flat.positions.reserve(3 * vertices + 3);
   if (smooth) flat.normals.reserve(3 * vertices + 3);
   flat.triangles.reserve(3 * triangles + 4);
@@ -135,9 +177,10 @@ FlatScene flatten(const SceneDescription& description, glm::vec3 environment_rad
   FlatScene flat;
   reserve(description, flat);
   flatten_materials(description, flat);
-  for (const Shape& shape : description.shapes) {
+  for_each_shape(description, [&](const Shape& shape) {
     append_shape(flat, shape, !description.materials[size_t(shape.material)].two_sided);
-  }
+  });
+  append_instances(description, flat);
   flat.features = geometry_features(flat) | material_features_of(description, flat);
   append_normals(flat, description);
   flatten_lights(description, environment_radiance, flat);
@@ -169,6 +212,7 @@ std::uint64_t fingerprint(const FlatScene& flat) {
                                      &flat.material_maps, &flat.light_of_primitive}) {
     print.add_all(*values);
   }
+  for (const FlatInstance& instance : flat.instances) print.add(std::int32_t(instance.object));
   const auto add_binding = [&](const TextureBinding& b) {
     print.add_all(std::array{b.texture, b.column, b.columns, std::int32_t(b.is_color), b.channel});
     print.add_all(std::array{b.power, b.scale.x, b.scale.y, b.scale.z});
@@ -200,6 +244,7 @@ SceneData view(const FlatScene& flat) {
   d.uvs = flat.uvs.data();
   d.light_of_primitive = flat.light_of_primitive.data();
   if (!flat.coincident.empty()) d.coincident = flat.coincident.data();
+  d.instances = {std::int32_t(flat.geometries.size()), flat.instance_rows.data()};
   d.geometry = {flat.geometry_rows.data(), flat.spheres.data()};
   d.materials = {flat.material_parameters.data(), flat.material_kinds.data(),
                  flat.material_maps.data(), flat.texture_bindings.data(), nullptr};

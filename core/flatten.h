@@ -22,12 +22,25 @@ struct Opacity {
   bool has_holes() const { return value < 1.0f || binding.texture >= 0; }
 };
 
+// Geometries [first_geometry, first_geometry + geometry_count), in a space of their own.
+struct FlatObject {
+  std::uint32_t first_geometry = 0, geometry_count = 0;
+};
+
+struct FlatInstance {
+  int object = 0;  // index of FlatScene::objects
+  glm::mat4 to_world{1.0f};
+};
+
 struct FlatScene {
-  std::vector<float> positions;         // xyz per vertex, and one vertex of padding for Embree
-  std::vector<float> normals;           // xyz per vertex; empty where no mesh is smooth
-  std::vector<float> uvs;               // two per vertex; empty where nothing reads them
-  std::vector<std::int32_t> triangles;  // three indices each, over all meshes, and one of padding
-  std::vector<FlatGeometry> geometries;
+  std::vector<float> positions;          // xyz per vertex, and one vertex of padding for Embree
+  std::vector<float> normals;            // xyz per vertex; empty where no mesh is smooth
+  std::vector<float> uvs;                // two per vertex; empty where nothing reads them
+  std::vector<std::int32_t> triangles;   // three indices each, over all meshes, and one of padding
+  std::vector<FlatGeometry> geometries;  // of the scene, then of each object
+  std::vector<FlatObject> objects;
+  std::vector<FlatInstance> instances;
+  std::vector<float> instance_rows;
   std::vector<std::int32_t> geometry_rows;
   std::vector<std::uint8_t> coincident;  // see core/coincidence.h
   std::vector<float> spheres;            // centre and radius per geometry

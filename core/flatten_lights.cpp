@@ -1,3 +1,4 @@
+#include "core/bounds.h"
 #include "core/flatten.h"
 #include "core/vec.h"
 
@@ -88,18 +89,9 @@ Light sphere_light(const Sphere& sphere, const Emission& emission) {
   return l;
 }
 
-float scene_radius(const FlatScene& flat) {
-  glm::vec3 lo(1e30f), hi(-1e30f);
-  const auto grow = [&](const float* p, float r) {
-    const glm::vec3 v(p[0], p[1], p[2]);
-    lo = glm::min(lo, v - r);
-    hi = glm::max(hi, v + r);
-  };
-  for (const std::int32_t i : flat.triangles) grow(&flat.positions[size_t(i) * 3], 0.0f);
-  for (std::size_t g = 0; g < flat.geometries.size(); ++g) {
-    if (flat.geometries[g].is_sphere) grow(&flat.spheres[g * 4], flat.spheres[g * 4 + 3]);
-  }
-  return hi.x < lo.x ? 1.0f : 0.5f * glm::length(hi - lo);
+float scene_radius(const SceneDescription& description) {
+  const Bounds bounds = bounds_of(description);
+  return bounds.empty() ? 1.0f : 0.5f * glm::length(bounds.hi - bounds.lo);
 }
 
 // Flux of the environment through the scene's bounding sphere; radiance: of a map its mean.
@@ -214,18 +206,18 @@ void flatten_lights(const SceneDescription& description, glm::vec3 environment_r
     if (shape.emission->radiance.texture >= 0) make_glow(*shape.emission, added, flat);
     lights.insert(lights.end(), added.begin(), added.end());
   }
+  const bool from_afar = description.environment || !description.lights.empty();
+  const float radius = from_afar ? scene_radius(description) : 1.0f;
   if (description.environment && description.environment->radiance != glm::vec3(0.0f)) {
     const bool constant = description.environment->mapping == Environment::Mapping::Constant;
     flat.environment_light = std::int32_t(lights.size());
-    lights.push_back(constant
-                         ? environment_light(LightKind::Environment,
-                                             description.environment->radiance, scene_radius(flat))
-                         : environment_light(LightKind::EnvironmentMap, environment_radiance,
-                                             scene_radius(flat)));
+    lights.push_back(
+        constant
+            ? environment_light(LightKind::Environment, description.environment->radiance, radius)
+            : environment_light(LightKind::EnvironmentMap, environment_radiance, radius));
   }
   for (const LightSource& source : description.lights) {
-    lights.push_back(
-        std::visit([&](const auto& s) { return delta_light(s, scene_radius(flat)); }, source));
+    lights.push_back(std::visit([&](const auto& s) { return delta_light(s, radius); }, source));
   }
   append_rows(lights, flat);
 }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -276,8 +277,10 @@ ObjMaterials read_mtl_libraries(const std::string& obj_path,
                                 SceneDescription& scene) {
   ObjMaterials materials;
   const fs::path folder = fs::path(obj_path).parent_path();
+  std::set<std::string> known;
   for (const std::string& names : libraries) {
     for (const std::string& name : files_named(folder, names)) {
+      if (!known.insert(name).second) continue;
       const fs::path path = folder / name;
       std::error_code ignored;
       if (fs::is_regular_file(path, ignored)) {

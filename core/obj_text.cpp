@@ -89,7 +89,7 @@ class Parser {
   void statement() {
     const std::string_view key = word();
     if (key == "v") {
-      contents_.positions.push_back(vector());
+      contents_.positions.push_back(position());
     } else if (key == "vt") {
       const float u = number(), v = optional_number(0.0f);
       contents_.uvs.emplace_back(u, 1.0f - v);
@@ -139,6 +139,16 @@ class Parser {
   glm::vec3 vector() {
     const float x = number(), y = number();
     return {x, y, number()};
+  }
+
+  // Squared lengths beyond would leave the range of float.
+  glm::vec3 position() {
+    constexpr float largest = 1e18f;
+    const glm::vec3 p = vector();
+    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > largest) {
+      fail("a vertex is farther than 1e18 from the origin; scale the mesh down");
+    }
+    return p;
   }
 
   // An index as the file has it, of `count` things read so far; -1 where the text is empty.

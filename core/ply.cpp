@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -61,7 +61,10 @@ class Source {
  public:
   explicit Source(const std::string& path) : path_(path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(path + ": cannot be opened; check the path");
+    std::error_code ignored;
+    if (!file || !std::filesystem::is_regular_file(path, ignored)) {
+      throw Error(path + ": cannot be opened; check the path");
+    }
     bytes_.assign(std::istreambuf_iterator<char>(file), {});
   }
 
@@ -248,9 +251,12 @@ void skip(Source& source, const Property& property) {
   for (size_t i = 0; i < count; ++i) source.number(property.type);
 }
 
+// Squared lengths of larger values would leave the range of float.
 float to_float(const Source& source, double value) {
-  if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) {
-    source.fail("a vertex has a coordinate that is not finite");
+  constexpr double largest = 1e18;
+  if (!std::isfinite(value)) source.fail("a vertex has a coordinate that is not finite");
+  if (std::abs(value) > largest) {
+    source.fail("a vertex has a coordinate beyond 1e18; scale the mesh down");
   }
   return static_cast<float>(value);
 }

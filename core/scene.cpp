@@ -43,7 +43,8 @@ bool has_environment_map(const SceneDescription& description) {
 }
 
 // One Embree geometry per shape, over the shared vertex and index arrays.
-void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id, Holes& holes) {
+void attach_shape(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id,
+                  Holes& holes) {
   const FlatGeometry& g = flat.geometries[id];
   RTCGeometry geometry = nullptr;
   if (g.is_sphere) {
@@ -62,6 +63,25 @@ void attach(RTCDevice device, RTCScene scene, const FlatScene& flat, unsigned id
   const std::int32_t material = flat.geometry_rows[id * geometry_stride + 1];
   if (flat.opacities[std::size_t(material)].has_holes()) set_holes(geometry, holes);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(scene, geometry, id);
+  rtcReleaseGeometry(geometry);
+}
+
+// Robust: no ray slips between triangles, and every traversal mode finds the same distances to the
+// last bit.
+SceneHandle new_scene(RTCDevice device) {
+  SceneHandle scene(rtcNewScene(device));
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+void attach_instance(RTCDevice device, RTCScene scene, RTCScene object, const glm::mat4& to_world,
+                     unsigned id) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(geometry, object);
+  rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &to_world[0][0]);
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
@@ -92,14 +112,41 @@ struct Scene::Storage {
   std::vector<Holes> holes;  // per geometry
   DeviceHandle device;
   SceneHandle scene;
+  std::vector<SceneHandle> objects;
   SceneData data;
   std::uint64_t fingerprint = 0;
+
+  void attach_shapes(RTCScene to, unsigned first, unsigned count) {
+    for (unsigned id = first; id < first + count; ++id) {
+      holes[id] = {&flat, &texture_table, id};
+      attach_shape(device.get(), to, flat, id, holes[id]);
+    }
+  }
+
+  // Instances are numbered after all shapes.
+  void build() {
+    const auto all = unsigned(flat.geometries.size());
+    holes.resize(all);
+    attach_shapes(scene.get(), 0, flat.objects.empty() ? all : flat.objects[0].first_geometry);
+    for (const FlatObject& object : flat.objects) {
+      objects.push_back(new_scene(device.get()));
+      attach_shapes(objects.back().get(), object.first_geometry, object.geometry_count);
+      rtcCommitScene(objects.back().get());
+    }
+    for (std::size_t i = 0; i < flat.instances.size(); ++i) {
+      const FlatInstance& instance = flat.instances[i];
+      attach_instance(device.get(), scene.get(), objects[std::size_t(instance.object)].get(),
+                      instance.to_world, all + unsigned(i));
+    }
+    rtcCommitScene(scene.get());
+  }
 };
 
 Scene::Scene(SceneDescription description, const std::string& embree_isa)
     : storage_(std::make_unique<Storage>()) {
   Storage& s = *storage_;
-  if (description.shapes.empty() && description.lights.empty() && !description.environment) {
+  if (description.shapes.empty() && description.instances.empty() && description.lights.empty() &&
+      !description.environment) {
     throw Error(description.name + ": nothing to render: no shape and no light");
   }
   expand_shapes(description);
@@ -115,22 +162,14 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   if (s.environment_map) s.fingerprint ^= s.environment_map->fingerprint() * 5u;
   description.shapes.clear();
   description.objects.clear();
+  description.textures.clear();
   s.description = std::move(description);
 
   s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));
   if (!s.device) throw Error("Embree cannot start for instruction set " + embree_isa);
   rtcSetDeviceMemoryMonitorFunction(s.device.get(), EmbreeMemory::count, &s.embree_memory);
-  s.scene.reset(rtcNewScene(s.device.get()));
-  // Robust: no ray slips between triangles, and every traversal mode finds the same distances to
-  // the last bit.
-  rtcSetSceneFlags(s.scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(s.scene.get(), RTC_BUILD_QUALITY_HIGH);
-  s.holes.resize(s.flat.geometries.size());
-  for (unsigned id = 0; id < s.flat.geometries.size(); ++id) {
-    s.holes[id] = {&s.flat, &s.texture_table, id};
-    attach(s.device.get(), s.scene.get(), s.flat, id, s.holes[id]);
-  }
-  rtcCommitScene(s.scene.get());
+  s.scene = new_scene(s.device.get());
+  s.build();
   check(s.device.get());
 
   s.data = view(s.flat);

@@ -136,6 +136,16 @@ struct CameraData {
   const float* filter_y = nullptr;
 };
 
+// Rows per instance, `instance_stride` floats each, after the identity for what is no instance:
+// 0 three rows of the matrix to the world, each with its translation last; 12 three rows of its
+// inverse transpose, for normals, the first with the sign of its determinant last.
+inline constexpr int instance_stride = 24;
+
+struct InstanceTable {
+  std::int32_t first_id = 0;  // Embree's number of the first one
+  const float* rows = nullptr;
+};
+
 struct SceneData {
   void* embree_scene = nullptr;             // RTCScene
   const std::int32_t* triangles = nullptr;  // three vertex indices each
@@ -145,6 +155,7 @@ struct SceneData {
   const std::int32_t* light_of_primitive = nullptr;
   const std::uint8_t* coincident = nullptr;  // per triangle, 1: overlaps another; or no array
   GeometryTable geometry;
+  InstanceTable instances;
   MaterialTable materials;
   TextureTable textures;
   LightTable lights;

@@ -177,8 +177,10 @@ glm::vec3 unit(glm::vec3 n) {
 void read_vertices(Inflater& in, std::uint32_t flags, std::size_t count, TriangleMesh& mesh) {
   const bool doubles = (flags & double_precision) != 0u;
   const std::vector<float> p = read_floats(in, 3 * count, doubles);
-  if (!std::all_of(p.begin(), p.end(), [](float v) { return std::isfinite(v); })) {
-    in.file().fail("a mesh has a vertex that is not finite");
+  // Squared lengths beyond would leave the range of float.
+  constexpr float largest = 1e18f;
+  if (!std::all_of(p.begin(), p.end(), [](float v) { return std::abs(v) <= largest; })) {
+    in.file().fail("a mesh has a vertex that is not finite or farther than 1e18 from the origin");
   }
   mesh.positions.resize(count);
   for (std::size_t i = 0; i < count; ++i) {

@@ -45,57 +45,22 @@ std::size_t memory_bytes(const Shape& shape) {
          mesh->uvs.size() * sizeof(glm::vec2) + mesh->triangles.size() * sizeof(glm::uvec3);
 }
 
-SceneBounds no_bounds() {
-  constexpr float largest = std::numeric_limits<float>::max();
-  return {glm::vec3(largest), glm::vec3(-largest)};
-}
-
-void grow(SceneBounds& bounds, glm::vec3 p, glm::vec3 radius = glm::vec3(0.0f)) {
-  bounds.lo = glm::min(bounds.lo, p - radius);
-  bounds.hi = glm::max(bounds.hi, p + radius);
-}
-
-void grow(SceneBounds& bounds, const Shape& shape) {
-  if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
-    for (const glm::vec3 p : mesh->positions) grow(bounds, p);
-  } else if (const auto* sphere = std::get_if<Sphere>(&shape.geometry)) {
-    grow(bounds, sphere->center, glm::vec3(sphere->radius));
-  } else if (const auto* disk = std::get_if<Disk>(&shape.geometry)) {
-    const glm::vec3 n = disk->normal;
-    grow(bounds, disk->center, disk->radius * glm::sqrt(glm::max(1.0f - n * n, 0.0f)));
-  }
-}
-
-void grow(SceneBounds& bounds, const SceneBounds& object, const glm::mat4& to_world) {
-  if (object.empty()) return;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 p(corner & 1 ? object.hi.x : object.lo.x,
-                      corner & 2 ? object.hi.y : object.lo.y,
-                      corner & 4 ? object.hi.z : object.lo.z);
-    grow(bounds, glm::vec3(to_world * glm::vec4(p, 1.0f)));
-  }
-}
-
 void report_geometry(const SceneDescription& scene, SceneReport& report) {
-  report.bounds = no_bounds();
+  report.bounds = bounds_of(scene);
   for (const Shape& shape : scene.shapes) {
     count(shape, report.own);
-    grow(report.bounds, shape);
     report.geometry_bytes += memory_bytes(shape);
   }
   std::vector<ShapeCounts> counts(scene.objects.size());
-  std::vector<SceneBounds> bounds(scene.objects.size(), no_bounds());
   for (std::size_t i = 0; i < counts.size(); ++i) {
     for (const Shape& shape : scene.objects[i].shapes) {
       count(shape, counts[i]);
-      grow(bounds[i], shape);
       report.geometry_bytes += memory_bytes(shape);
     }
     add(report.objects, counts[i]);
   }
   for (const Instance& instance : scene.instances) {
     add(report.placed, counts[std::size_t(instance.object)]);
-    grow(report.bounds, bounds[std::size_t(instance.object)], instance.to_world);
   }
   report.object_count = scene.objects.size();
   report.instance_count = scene.instances.size();

@@ -1,8 +1,8 @@
 // What a scene consists of, as its file says: what `lockstep info` shows.
 #pragma once
 
+#include "core/bounds.h"
 #include "core/read_scene.h"
-#include "core/scene_description.h"
 
 #include <nlohmann/json.hpp>
 
@@ -19,13 +19,6 @@ struct ShapeCounts {
   std::size_t triangles = 0, vertices = 0;  // of the meshes
 
   std::size_t shapes() const { return meshes + spheres + disks; }
-};
-
-// World space; empty where `lo` is above `hi`.
-struct SceneBounds {
-  glm::vec3 lo, hi;
-
-  bool empty() const { return lo.x > hi.x; }
 };
 
 struct MaterialCounts {
@@ -74,7 +67,7 @@ struct SceneReport {
   ShapeCounts objects;  // each object once
   ShapeCounts placed;   // of all instances
   std::size_t object_count = 0, instance_count = 0;
-  SceneBounds bounds;  // where instances are, of the boxes around their objects
+  Bounds bounds;  // where instances are, of the boxes around their objects
   std::size_t geometry_bytes = 0;
 
   std::vector<MaterialCounts> materials;  // of the models that occur

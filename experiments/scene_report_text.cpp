@@ -86,7 +86,7 @@ std::string kinds(const ShapeCounts& c) {
   return joined({{c.meshes, "mesh"}, {c.spheres, "sphere"}, {c.disks, "disk"}});
 }
 
-std::string bounds_text(const SceneBounds& b) {
+std::string bounds_text(const Bounds& b) {
   if (b.empty()) return "none";
   return fmt::format("({}) to ({}), size {}", vector_text(b.lo), vector_text(b.hi),
                      vector_text(b.hi - b.lo));

@@ -112,6 +112,7 @@ LOCKSTEP_INLINE void hand_on(const SceneData& scene, const RayQueue& rays, const
   put(out.primitive, get(hits.primitive));
   put(out.path, get(rays.path));
   if (needs<F>(scene, Feature::Spheres)) put(out.distance, get(hits.distance));
+  if (needs<F>(scene, Feature::Instances)) put(out.instance, get(hits.instance));
   if (refracts<F>(scene)) put(out.eta_scale, get(rays.eta_scale));
   if (needs<F>(scene, Feature::Absorption)) put(out.medium, get(rays.medium));
 }
@@ -125,6 +126,7 @@ inline void repeat_last(ShadeQueue& queue, int count, int width) {
     queue.primitive[i] = queue.primitive[count - 1];
     queue.material[i] = queue.material[count - 1];
     queue.path[i] = queue.path[count - 1];
+    queue.instance[i] = queue.instance[count - 1];
   }
 }
 

@@ -53,6 +53,36 @@ LOCKSTEP_INLINE void refine_sphere(const SceneData& scene, MaskOf<I> sphere, I g
   normal = select<V>(sphere, n, normal);
 }
 
+// Three rows of a matrix, each with one value more.
+template <class V>
+struct MatrixRows {
+  Rows<V> x, y, z;
+
+  LOCKSTEP_INLINE Vec3<V> linear(const Vec3<V>& v) const {
+    return {dot(Vec3<V>(x.x, x.y, x.z), v), dot(Vec3<V>(y.x, y.y, y.z), v),
+            dot(Vec3<V>(z.x, z.y, z.z), v)};
+  }
+  LOCKSTEP_INLINE Vec3<V> affine(const Vec3<V>& p) const {
+    return linear(p) + Vec3<V>(x.w, y.w, z.w);
+  }
+  // The largest that its parts may grow to for coordinates up to this.
+  LOCKSTEP_INLINE V largest(V coordinate) const {
+    const auto row = [&](const Rows<V>& r) LOCKSTEP_LAMBDA {
+      return fma(abs(r.x) + abs(r.y) + abs(r.z), coordinate, abs(r.w));
+    };
+    return max(max(row(x), row(y)), row(z));
+  }
+};
+
+// How the lanes' instances are placed; `part` 0: positions, 1: normals.
+template <class I>
+LOCKSTEP_INLINE MatrixRows<FloatOf<I>> load_matrix(const SceneData& scene, I instance, int part) {
+  const I row = select(instance < I(0), I(0), instance - I(scene.instances.first_id) + I(1));
+  const I at = row * I(instance_stride) + I(12 * part);
+  const float* rows = scene.instances.rows;
+  return {gather_rows(rows, at), gather_rows(rows + 4, at), gather_rows(rows + 8, at)};
+}
+
 template <int W, FeatureMask F>
 LOCKSTEP_INLINE TextureCoordinates<Float<W>> load_coordinates(const SceneData& scene,
                                                               const ShadeQueue& queue, int i,
@@ -95,9 +125,19 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
   const Vec3<V> direction = load3<V>(queue.direction, i);
   const Vec3<I> vertices = load_vertices(scene, geometry, load<I>(queue.primitive + i));
   const V u = load<V>(queue.barycentric_u + i), v = load<V>(queue.barycentric_v + i);
-  const Corners<V> corners = load_corners(scene.positions, vertices);
-  HitPoint<V> hit{corners.at(u, v), largest_coordinate(corners)};
-  Vec3<V> normal = cross<V>(corners.b - corners.a, corners.c - corners.a);
+  Corners<V> corners = load_corners(scene.positions, vertices);
+  V magnitude = largest_coordinate(corners), handedness(1.0f);
+  const I instance = needs<F>(scene, Feature::Instances) ? load<I>(queue.instance + i) : I(-1);
+  const bool instanced = needs<F>(scene, Feature::Instances) && any(!(instance < I(0)));
+  if (instanced) {
+    const MatrixRows<V> m = load_matrix(scene, instance, 0);
+    corners = {m.affine(corners.a), m.affine(corners.b), m.affine(corners.c)};
+    // Rounded on the way to the world, and rays again on their way back.
+    magnitude = select(instance < I(0), magnitude, V(4.0f) * m.largest(magnitude));
+    handedness = load_matrix(scene, instance, 1).x.w;
+  }
+  HitPoint<V> hit{corners.at(u, v), magnitude};
+  Vec3<V> normal = cross<V>(corners.b - corners.a, corners.c - corners.a) * handedness;
   if (needs<F>(scene, Feature::Spheres)) {
     const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
     const Vec3<V> on_ray = fma(load<V>(queue.distance + i), direction, load3<V>(queue.origin, i));
@@ -116,7 +156,9 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
 
   Vec3<V> shading = s.geometric_normal;
   if (needs<F>(scene, Feature::SmoothNormals)) {
-    const Vec3<V> n = normalize_any(load_corners(scene.normals, vertices).at(u, v));
+    Vec3<V> interpolated = load_corners(scene.normals, vertices).at(u, v);
+    if (instanced) interpolated = load_matrix(scene, instance, 1).linear(interpolated);
+    const Vec3<V> n = normalize_any(interpolated);
     const Mask<W> smooth = (geometry.w & I(geometry_is_smooth)) != I(0);
     const Mask<W> turned = dot(n, s.geometric_normal) < V(0.0f);
     // Vertex normals say where the outside is, whatever the winding.

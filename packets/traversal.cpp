@@ -70,6 +70,7 @@ template <int P>
 LOCKSTEP_INLINE void keep_hits(const RTCRayHitNt<P>& packet, HitArray& hits, int i) {
   std::memcpy(hits.geometry + i, packet.hit.geomID, sizeof packet.hit.geomID);
   std::memcpy(hits.primitive + i, packet.hit.primID, sizeof packet.hit.primID);
+  std::memcpy(hits.instance + i, packet.hit.instID[0], sizeof packet.hit.instID[0]);
   std::memcpy(hits.distance + i, packet.ray.tfar, sizeof packet.ray.tfar);
   std::memcpy(hits.u + i, packet.hit.u, sizeof packet.hit.u);
   std::memcpy(hits.v + i, packet.hit.v, sizeof packet.hit.v);

@@ -54,6 +54,7 @@ struct alignas(64) HitArray {
   FloatArray distance;
   FloatArray u, v;  // barycentric
   IntArray geometry, primitive;
+  IntArray instance;  // Embree's number, -1 for what is none
   IntArray material;  // where the scene has mixes: what the path goes on with
 };
 
@@ -83,6 +84,7 @@ struct alignas(64) ShadeQueue {
   FloatArray eta_scale;  // see RayQueue
   IntArray medium;
   IntArray geometry, primitive, material, path;
+  IntArray instance;  // see HitArray
   UIntArray pixel, sample;
   FloatArray u[4], v[4];
 };

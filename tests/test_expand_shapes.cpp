@@ -38,15 +38,20 @@ TEST(ExpandShapes, DisksKeepTheirAreaAndSide) {
   }
 }
 
-TEST(ExpandShapes, InstancesBecomeShapesInTheirPlaces) {
-  SceneDescription scene = scene_of(DiffuseMaterial{});
+ObjectDescription ball_and_triangle() {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  scene.objects.push_back({{{mesh, 0, {}}, {Sphere{{1, 0, 0}, 0.5f}, 0, {}}}});
+  return {{{mesh, 0, {}}, {Sphere{{1, 0, 0}, 0.5f}, 0, {}}}};
+}
+
+TEST(ExpandShapes, WhatIsPlacedOnceBecomesAShape) {
+  SceneDescription scene = scene_of(DiffuseMaterial{});
+  scene.objects = {ball_and_triangle(), ball_and_triangle()};
   scene.instances.push_back({0, glm::translate(glm::mat4(1.0f), glm::vec3(0, 0, 7))});
-  scene.instances.push_back({0, glm::scale(glm::mat4(1.0f), glm::vec3(-2.0f, 1.0f, 1.0f))});
+  scene.instances.push_back({1, glm::scale(glm::mat4(1.0f), glm::vec3(-2.0f, 1.0f, 1.0f))});
   expand_shapes(scene);
+  EXPECT_TRUE(scene.instances.empty());
   ASSERT_EQ(scene.shapes.size(), 5u);
   EXPECT_EQ(std::get<TriangleMesh>(scene.shapes[1].geometry).positions[1], glm::vec3(1, 0, 7));
   const auto& ball = std::get<TriangleMesh>(scene.shapes[2].geometry);
@@ -58,6 +63,19 @@ TEST(ExpandShapes, InstancesBecomeShapesInTheirPlaces) {
   const glm::uvec3 t = mirrored.triangles[0];
   const glm::vec3 p = mirrored.positions[t.x];
   EXPECT_GT(glm::cross(mirrored.positions[t.y] - p, mirrored.positions[t.z] - p).z, 0.0f);
+}
+
+TEST(ExpandShapes, WhatIsPlacedOftenStaysOneObject) {
+  SceneDescription scene = scene_of(DiffuseMaterial{});
+  scene.objects = {ball_and_triangle()};
+  const auto flat = glm::scale(glm::mat4(1.0f), glm::vec3(1.0f, 1.0f, 0.0f));
+  scene.instances = {{0, glm::mat4(1.0f)}, {0, flat}, {0, glm::mat4(2.0f)}};
+  expand_shapes(scene);
+  // But for the one that has no inverse.
+  EXPECT_EQ(scene.instances.size(), 2u);
+  EXPECT_EQ(scene.shapes.size(), 3u);
+  ASSERT_EQ(scene.objects[0].shapes.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<TriangleMesh>(scene.objects[0].shapes[1].geometry));
 }
 
 }  // namespace

@@ -77,6 +77,7 @@ glm::vec3 spectrum_values(const Element& e, ColorUse use) {
 
 // Lines of "wavelength value"; '#' starts a comment.
 glm::vec3 spectrum_file(State& state, const Element& e, ColorUse use) {
+  if (!e.has("filename")) fail(e.where(), e.shown() + " needs a value, a type or a filename");
   const std::string path = resolve(state.sources, e, e.attribute("filename"));
   std::error_code ignored;
   std::ifstream file(path);
@@ -110,6 +111,7 @@ glm::vec3 black_body_tag(const Element& e) {
 
 // Mitsuba 3: <spectrum type="..."> with parameters of its own.
 glm::vec3 spectrum_object(State& state, const Element& e, ColorUse use) {
+  const Nesting nesting(state, e);
   const Properties set = state.properties(e);
   const std::string& type = set.type();
   glm::vec3 color(0.5f);

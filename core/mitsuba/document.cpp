@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int deepest_nesting = 64, deepest_include = 16, most_documents = 1000;
-constexpr std::size_t longest_value = 1 << 20;
+constexpr std::size_t longest_value = 1 << 20, most_substituted = 1 << 26;
 constexpr std::uintmax_t largest_file = std::uintmax_t(1) << 30;
 
 std::string read_text(const std::string& path, const Location& from) {
@@ -147,7 +147,7 @@ class Loader {
   }
 
   // Parameters are those with the longest names that fit.
-  std::string substituted(const std::string& text, const Element& element) const {
+  std::string substituted(const std::string& text, const Element& element) {
     std::string result;
     for (std::size_t at = 0; at < text.size();) {
       if (text[at] != '$') {
@@ -173,6 +173,10 @@ class Loader {
       at += length;
       if (result.size() > longest_value) fail(element.where(), "a value is too long");
     }
+    substituted_ += result.size();
+    if (substituted_ > most_substituted) {
+      fail(element.where(), "the values that parameters stand for are too long in all");
+    }
     return result;
   }
 
@@ -180,6 +184,7 @@ class Loader {
   Warnings& warnings_;
   std::vector<fs::path> open_;
   std::map<std::string, std::string> values_;
+  std::size_t substituted_ = 0;  // bytes in all: values of values grow fast
 };
 
 }  // namespace

@@ -142,6 +142,11 @@ void carry_out(State& state, Lexer& lexer, const Token& token) {
 }  // namespace
 
 void push_scope(State& state, const Call& call) {
+  constexpr size_t deepest = 1000;
+  if (state.scopes.size() == deepest) {
+    fail(call.where, call.name + " is nested more than " + std::to_string(deepest) +
+                         " deep; is an end missing?");
+  }
   state.scopes.push_back({call.name, call.where, state.attributes});
 }
 
@@ -164,6 +169,11 @@ void read_file(State& state, const std::string& path, const Location& from) {
   if (state.include_depth == deepest) {
     fail(from, "files include one another more than " + std::to_string(deepest) + " deep; does \"" +
                    path + "\" include itself?");
+  }
+  // Files that each include two others would be read for ever.
+  constexpr int most_files = 10'000;
+  if (++state.files_read > most_files) {
+    fail(from, "more than " + std::to_string(most_files) + " files are included; join some");
   }
   ++state.include_depth;
   Lexer lexer(path, read_text(path, from));

@@ -121,7 +121,8 @@ double Lexer::number(const Token& token) const {
 
 std::string read_text(const std::string& path, const Location& where) {
   std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
+  std::error_code ignored;
+  if (!file || !std::filesystem::is_regular_file(path, ignored)) {
     const std::string what = "\"" + path + "\" cannot be opened; check the path";
     if (where.file.empty()) throw Error(what);
     fail(where, what);

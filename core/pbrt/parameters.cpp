@@ -137,7 +137,12 @@ int as_int(const ParameterSet& set, const Parameter& p, double value) {
 
 ParameterSet::ParameterSet(Lexer& lexer, std::string owner, const Location& where)
     : owner_(std::move(owner)), where_(where) {
+  constexpr size_t most = 1000;  // comparing each with all takes the square of that
   while (lexer.peek().kind == Token::Kind::String) {
+    if (parameters_.size() == most) {
+      fail(lexer.at(lexer.peek()), owner_ + " has more than " + std::to_string(most) +
+                                       " parameters; remove those that are not used");
+    }
     parameters_.push_back(read_parameter(lexer));
     const Parameter& added = parameters_.back();
     for (size_t i = 0; i + 1 < parameters_.size(); ++i) {

@@ -92,7 +92,7 @@ TriangleMesh ply_mesh(const ParameterSet& set, const ShapeContext& context) {
   }
 }
 
-TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext&) {
+TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext& context) {
   TriangleMesh control;
   control.positions = required_points(set);
   const std::vector<int> indices = set.get_ints("indices");
@@ -102,11 +102,10 @@ TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext&) {
   set.ignore({"scheme"});
 
   const int levels = set.get_int("levels", set.get_int("nlevels", 3));
-  constexpr double most_triangles = 1 << 26;
   const double triangles = static_cast<double>(control.triangles.size()) * std::pow(4.0, levels);
-  if (levels < 0 || triangles > most_triangles) {
+  if (levels < 0 || !(triangles <= context.triangles_left)) {
     fail(set.where(), set.owner() + " cannot have " + std::to_string(levels) +
-                          " levels; give 0 or more, and no more than 67 million triangles");
+                          " levels; give 0 or more, and no more than 67 million triangles in all");
   }
   try {
     TriangleMesh surface = subdivide_loop(control, levels);

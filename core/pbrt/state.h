@@ -94,7 +94,8 @@ struct State {
   bool v2_directive = false;  // one that only v2 has was met
   bool in_world = false;
   bool world_ended = false;
-  int include_depth = 0;
+  int include_depth = 0, files_read = 0;
+  double triangles_left = 1 << 26;  // that subdivision may make
 };
 
 }  // namespace lockstep::pbrt

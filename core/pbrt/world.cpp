@@ -93,6 +93,14 @@ void attribute(State& state, const Call& call) {
     std::erase_if(defaults, [&](const Parameter& old) { return old.name == p.name; });
     defaults.push_back(p);
   }
+  // Each scope and each declaration that follows has a copy.
+  constexpr size_t most_values = 256;
+  size_t values = 0;
+  for (const Parameter& p : defaults) values += p.numbers.size() + p.strings.size();
+  if (values > most_values) {
+    fail(call.where, "Attribute \"" + target + "\" holds more than " + std::to_string(most_values) +
+                         " values; state them where they are used");
+  }
 }
 
 void material(State& state, const Call& call) {
@@ -160,11 +168,15 @@ void shape(State& state, const Call& call) {
   context.object_to_world = state.attributes.ctm;
   context.reverse_orientation = state.attributes.reverse_orientation;
   context.may_be_textured = may_be_textured(state, set);
+  context.triangles_left = state.triangles_left;
   context.resolve = [&](const std::string& name) {
     return resolve(state.library, call.where.file, name);
   };
   std::optional<Geometry> geometry = make_shape(type, set, context, state.library.warnings);
   if (!geometry) return;
+  if (type == "loopsubdiv") {
+    state.triangles_left -= double(std::get<TriangleMesh>(*geometry).triangles.size());
+  }
 
   Shape made{std::move(*geometry), add_surface(state, std::move(surface)), {}};
   AreaLight* light = state.attributes.area_light.get();
