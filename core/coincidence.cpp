@@ -2,8 +2,11 @@
 // together, and a search for overlaps in each such group, in the plane.
 #include "core/coincidence.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -25,6 +28,8 @@ constexpr double kCell = 0x1p-8;
 // Cells of a slope (at most 1 and half a cell) and of an offset (at most 3 and a little).
 constexpr int kSlopeCells = 520;
 constexpr int kOffsetCells = 1560;
+// Threads take so many triangles or entries at a time.
+constexpr std::size_t kShare = 1 << 15;
 // Groups up to this size are searched pair by pair.
 constexpr std::size_t kSmallGroup = 24;
 
@@ -212,12 +217,11 @@ void append_keys(const Facet& f, std::size_t axis, std::size_t index, std::vecto
 }
 static_assert(3LL * kSlopeCells * kSlopeCells * kOffsetCells < 1LL << 31);
 
-// One entry per triangle with an area and per plane cell that it may lie in. The plane is seen
-// along its dominant axis; where errors leave open which one that is, along each of them.
-std::vector<Entry> plane_entries(const Mesh& mesh) {
+// Of the triangles [first, last).
+std::vector<Entry> plane_entries(const Mesh& mesh, std::size_t first, std::size_t last) {
   std::vector<Entry> entries;
-  entries.reserve(mesh.count * 2);
-  for (std::size_t i = 0; i < mesh.count; ++i) {
+  entries.reserve((last - first) * 2);
+  for (std::size_t i = first; i < last; ++i) {
     const Corners p = corners_along(mesh, i, 2);
     const Point n = normal_of(p);
     const double size = longest_edge(p), least_area = kLeastArea * size * size;
@@ -235,6 +239,25 @@ std::vector<Entry> plane_entries(const Mesh& mesh) {
       const double error = std::min(f.slope_error, 0.25 * kCell);
       if (along[axis] >= most * (1.0 - 2.0 * error)) append_keys(f, axis, i, entries);
     }
+  }
+  return entries;
+}
+
+// One entry per triangle with an area and per plane cell that it may lie in, in the order of the
+// triangles. The plane is seen along its dominant axis; where errors leave open which one that is,
+// along each of them.
+std::vector<Entry> plane_entries(const Mesh& mesh) {
+  std::vector<std::vector<Entry>> shares((mesh.count + kShare - 1) / kShare);
+  tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
+    shares[i] = plane_entries(mesh, i * kShare, std::min((i + 1) * kShare, mesh.count));
+  });
+  std::size_t size = 0;
+  for (const std::vector<Entry>& share : shares) size += share.size();
+  std::vector<Entry> entries;
+  entries.reserve(size);
+  for (std::vector<Entry>& share : shares) {
+    entries.insert(entries.end(), share.begin(), share.end());
+    share = {};
   }
   return entries;
 }
@@ -320,10 +343,11 @@ Strips strips_over(std::span<const Box> boxes) {
           static_cast<int>(count) - 1};
 }
 
-// Finds the overlaps in groups of triangles whose planes may be the same.
+// Finds the overlaps in groups of triangles whose planes may be the same. Several searches may
+// share their flags: those that are set do not depend on the order.
 class OverlapSearch {
  public:
-  explicit OverlapSearch(const Mesh& mesh) : mesh_(mesh), flags_(mesh.count) {}
+  OverlapSearch(const Mesh& mesh, std::vector<std::uint8_t>& flags) : mesh_(mesh), flags_(flags) {}
 
   void search(std::span<const Entry> group, std::size_t axis) {
     axis_ = axis;
@@ -340,16 +364,10 @@ class OverlapSearch {
     }
   }
 
-  // The flags; empty if none is set.
-  std::vector<std::uint8_t> take_flags() {
-    return any_ ? std::move(flags_) : std::vector<std::uint8_t>{};
-  }
-
  private:
   void test(const Box& a, const Box& b) {
-    std::uint8_t& a_flag = flags_[a.triangle];
-    std::uint8_t& b_flag = flags_[b.triangle];
-    if (a_flag && b_flag) return;
+    const std::atomic_ref a_flag(flags_[a.triangle]), b_flag(flags_[b.triangle]);
+    if (a_flag.load(std::memory_order_relaxed) && b_flag.load(std::memory_order_relaxed)) return;
     const Corners p = corners_along(mesh_, a.triangle, axis_);
     const Corners q = corners_along(mesh_, b.triangle, axis_);
     const double noise = a.noise + b.noise;
@@ -358,8 +376,8 @@ class OverlapSearch {
         !in_one_plane(p, a.noise, q, b.noise)) {
       return;
     }
-    a_flag = b_flag = 1;
-    any_ = true;
+    a_flag.store(1, std::memory_order_relaxed);
+    b_flag.store(1, std::memory_order_relaxed);
   }
 
   // Sorts the boxes by strip and then by their low end, and compares each with those that begin
@@ -390,12 +408,25 @@ class OverlapSearch {
   }
 
   const Mesh& mesh_;
-  std::vector<std::uint8_t> flags_;
-  bool any_ = false;
+  std::vector<std::uint8_t>& flags_;
   std::size_t axis_ = 0;
   std::vector<Box> boxes_;
   std::vector<Entry> order_, scratch_;
 };
+
+// Searches the groups of sorted `entries` that begin in [first, last).
+void search_groups(std::span<const Entry> entries, std::size_t first, std::size_t last,
+                   OverlapSearch& search) {
+  while (first > 0 && first < last && key_of(entries[first]) == key_of(entries[first - 1])) ++first;
+  while (first < last) {
+    const std::uint32_t key = key_of(entries[first]);
+    std::size_t end = first + 1;
+    while (end < entries.size() && key_of(entries[end]) == key) ++end;
+    const std::size_t axis = key / (kSlopeCells * kSlopeCells * kOffsetCells);
+    if (end - first > 1) search.search(entries.subspan(first, end - first), axis);
+    first = end;
+  }
+}
 
 }  // namespace
 
@@ -408,15 +439,13 @@ std::vector<std::uint8_t> find_coincident_triangles(const float* positions,
   std::vector<Entry> scratch;
   sort_entries(entries, scratch);
 
-  OverlapSearch search(mesh);
-  for (auto first = entries.begin(); first != entries.end();) {
-    const std::uint32_t key = key_of(*first);
-    const auto last = std::find_if(first, entries.end(), [&](Entry e) { return key_of(e) != key; });
-    const std::size_t axis = key / (kSlopeCells * kSlopeCells * kOffsetCells);
-    if (last - first > 1) search.search({first, last}, axis);
-    first = last;
-  }
-  return search.take_flags();
+  std::vector<std::uint8_t> flags(count);
+  tbb::parallel_for(std::size_t{0}, (entries.size() + kShare - 1) / kShare, [&](std::size_t i) {
+    OverlapSearch search(mesh, flags);
+    search_groups(entries, i * kShare, std::min((i + 1) * kShare, entries.size()), search);
+  });
+  if (std::find(flags.begin(), flags.end(), 1) == flags.end()) flags.clear();
+  return flags;
 }
 
 }  // namespace lockstep

@@ -28,7 +28,8 @@ void add_default_camera(SceneDescription& scene) {
   float radius = 1.0f;
   if (!bounds.empty()) {
     center = 0.5f * bounds.lo + 0.5f * bounds.hi;
-    radius = glm::length(0.5f * bounds.hi - 0.5f * bounds.lo);
+    // In double: the squares of large coordinates leave float's range.
+    radius = float(0.5 * glm::length(glm::dvec3(bounds.hi) - glm::dvec3(bounds.lo)));
   }
   if (!(radius > 0.0f && std::isfinite(radius))) radius = 1.0f;
 

@@ -145,6 +145,7 @@ void append_uvs(FlatScene& flat, const SceneDescription& description) {
       flat.uvs.insert(flat.uvs.end(), {uv.x, uv.y});
     }
   });
+  flat.uvs.insert(flat.uvs.end(), 6, 0.0f);  // for lanes on spheres, and to read four at a time
 }
 
 // Embree reads 16 bytes per vertex, kernels rows of four values. Lanes on spheres look up the first
@@ -152,7 +153,6 @@ void append_uvs(FlatScene& flat, const SceneDescription& description) {
 void pad(FlatScene& flat) {
   append(flat.positions, glm::vec3(0.0f));
   if (!flat.normals.empty()) append(flat.normals, glm::vec3(0.0f));
-  if (!flat.uvs.empty()) flat.uvs.insert(flat.uvs.end(), 4, 0.0f);
   flat.triangles.insert(flat.triangles.end(), 4, 0);
   flat.material_parameters.insert(flat.material_parameters.end(), 3, 0.0f);
 }

@@ -1,6 +1,9 @@
-// Surface materials as scene files state them. To add a model: a struct here, its kernel in
-// core/bsdf/, and a line in core/bsdf.h. Reflectances are linear RGB in [0, 1]; alpha is GGX's
-// roughness parameter, 0 for a smooth surface; eta is relative to the outside.
+// Surface materials as scene files state them. To add a model: a struct here, its row in
+// core/flatten_materials.cpp, its kernel in core/bsdf/, and its lines in packets/bsdf_models.h and
+// packets/path.h.
+//
+// Reflectances are linear RGB in [0, 1]; alpha is GGX's roughness parameter, 0 for a smooth surface;
+// eta is relative to the outside.
 #pragma once
 
 #include "core/texture_description.h"

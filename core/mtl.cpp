@@ -1,6 +1,6 @@
 #include "core/mtl.h"
 
-#include "core/error.h"
+#include "core/location.h"
 
 #include <glm/common.hpp>
 
@@ -114,10 +114,10 @@ class Reader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw error_at(path_, line_, what); }
+  [[noreturn]] void fail(const std::string& what) const { lockstep::fail({path_, line_}, what); }
 
   void warn(const std::string& what) {
-    const std::string line = path_ + ":" + std::to_string(line_) + ": " + what;
+    const std::string line = path_ + ":" + std::to_string(line_) + ": " + printable(what);
     scene_.warnings.push_back(line);
   }
 
@@ -286,7 +286,7 @@ ObjMaterials read_mtl_libraries(const std::string& obj_path,
       if (fs::is_regular_file(path, ignored)) {
         Reader(path.string(), scene).read(materials);
       } else {
-        scene.warnings.push_back(obj_path + ": the material file \"" + name +
+        scene.warnings.push_back(obj_path + ": the material file \"" + printable(name) +
                                  "\" is missing; a diffuse grey is used");
       }
     }

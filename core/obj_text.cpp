@@ -1,6 +1,6 @@
 #include "core/obj_text.h"
 
-#include "core/error.h"
+#include "core/location.h"
 
 #include <glm/geometric.hpp>
 
@@ -52,7 +52,7 @@ class Parser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw error_at(path_, line_, what); }
+  [[noreturn]] void fail(const std::string& what) const { lockstep::fail({path_, line_}, what); }
 
   // Moves to the next line; one that ends in a backslash goes on in the line after it.
   bool next_line() {

@@ -1,6 +1,6 @@
 #include "core/ply.h"
 
-#include "core/error.h"
+#include "core/location.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -56,21 +56,48 @@ size_t size_of(Scalar type) {
   return sizes[static_cast<int>(type)];
 }
 
+// A file's bytes, followed by a zero.
+struct FileBytes {
+  std::unique_ptr<char[]> data;
+  size_t size = 0;
+};
+
+// The first `most` bytes, or all. The size that the file system tells is a guess.
+FileBytes read_bytes(const std::string& path, size_t most) {
+  std::error_code failed;
+  const bool is_file = std::filesystem::is_regular_file(path, failed);
+  const auto told = is_file ? std::filesystem::file_size(path, failed) : 0;
+  std::ifstream file;
+  if (is_file && !failed) file.open(path, std::ios::binary);
+  if (!file.is_open()) throw Error(path + ": cannot be opened; check the path");
+  FileBytes bytes;
+  // One byte more than expected tells the end of the file.
+  size_t capacity = std::min<std::uint64_t>(told, most) + 1;
+  bytes.data = std::make_unique_for_overwrite<char[]>(capacity + 1);
+  while (bytes.size < most && file) {
+    if (bytes.size == capacity) {
+      capacity *= 2;
+      auto larger = std::make_unique_for_overwrite<char[]>(capacity + 1);
+      std::memcpy(larger.get(), bytes.data.get(), bytes.size);
+      bytes.data = std::move(larger);
+    }
+    const size_t wanted = std::min(capacity, most) - bytes.size;
+    file.read(bytes.data.get() + bytes.size, static_cast<std::streamsize>(wanted));
+    bytes.size += static_cast<size_t>(file.gcount());
+  }
+  bytes.data[bytes.size] = '\0';
+  return bytes;
+}
+
 // The file's bytes and how far they are read.
 class Source {
  public:
-  explicit Source(const std::string& path) : path_(path) {
-    std::ifstream file(path, std::ios::binary);
-    std::error_code ignored;
-    if (!file || !std::filesystem::is_regular_file(path, ignored)) {
-      throw Error(path + ": cannot be opened; check the path");
-    }
-    bytes_.assign(std::istreambuf_iterator<char>(file), {});
-  }
+  explicit Source(const std::string& path, size_t most = SIZE_MAX)
+      : path_(path), file_(read_bytes(path, most)), bytes_(file_.data.get(), file_.size) {}
 
   [[noreturn]] void fail(const std::string& what) const {
-    if (format == Format::Ascii) throw error_at(path_, line_, what);
-    throw Error(path_ + ": " + what);
+    if (format == Format::Ascii) lockstep::fail({path_, line_}, what);
+    throw Error(path_ + ": " + printable(what));
   }
 
   std::uint64_t bytes_left() const { return bytes_.size() - position_; }
@@ -78,7 +105,7 @@ class Source {
   std::string_view header_line() {
     ++line_;
     const size_t end = bytes_.find('\n', position_);
-    if (end == std::string::npos) fail("the PLY header has no end_header");
+    if (end == std::string_view::npos) fail("the PLY header has no end_header");
     std::string_view text(bytes_.data() + position_, end - position_);
     position_ = end + 1;
     if (text.ends_with('\r')) text.remove_suffix(1);
@@ -86,6 +113,15 @@ class Source {
   }
 
   void end_header() { ++line_; }
+
+  // Whether numbers stand in the file as they do in memory.
+  bool is_native() const {
+    constexpr bool big = std::endian::native == std::endian::big;
+    return format == (big ? Format::BigEndian : Format::LittleEndian);
+  }
+  // What is left, for those who look ahead, and how much of it they took.
+  const char* rest() const { return bytes_.data() + position_; }
+  void take(size_t count) { position_ += count; }
 
   double number(Scalar type) {
     if (format == Format::Ascii) return text_number();
@@ -150,7 +186,8 @@ class Source {
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
   std::string path_;
-  std::string bytes_;
+  FileBytes file_;
+  std::string_view bytes_;
   size_t position_ = 0;
   int line_ = 0;
 };
@@ -252,10 +289,11 @@ void skip(Source& source, const Property& property) {
 }
 
 // Squared lengths of larger values would leave the range of float.
+constexpr double largest_coordinate = 1e18;
+
 float to_float(const Source& source, double value) {
-  constexpr double largest = 1e18;
   if (!std::isfinite(value)) source.fail("a vertex has a coordinate that is not finite");
-  if (std::abs(value) > largest) {
+  if (std::abs(value) > largest_coordinate) {
     source.fail("a vertex has a coordinate beyond 1e18; scale the mesh down");
   }
   return static_cast<float>(value);
@@ -273,64 +311,192 @@ int vertex_slot(std::string_view name) {
   return -1;
 }
 
-void read_vertices(Source& source, const Element& element, TriangleMesh& mesh) {
+// How the file stores vertices, and which of their values the mesh takes.
+struct VertexLayout {
+  const Element& element;
+  std::vector<int> slots;  // per property
+  bool with_normals = false, with_uvs = false;
+};
+
+VertexLayout vertex_layout(const Source& source, const Element& element) {
+  VertexLayout layout{element, {}};
   std::array<bool, 8> present{};
-  std::vector<int> slots;
   for (const Property& p : element.properties) {
-    slots.push_back(p.count_type ? -1 : vertex_slot(p.name));
-    if (slots.back() >= 0) present[slots.back()] = true;
+    layout.slots.push_back(p.count_type ? -1 : vertex_slot(p.name));
+    if (layout.slots.back() >= 0) present[layout.slots.back()] = true;
   }
   if (!present[0] || !present[1] || !present[2]) source.fail("vertices lack x, y or z");
-  const bool with_normals = present[3] && present[4] && present[5];
-  const bool with_uvs = present[6] && present[7];
+  layout.with_normals = present[3] && present[4] && present[5];
+  layout.with_uvs = present[6] && present[7];
+  return layout;
+}
 
-  mesh.positions.reserve(element.count);
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    std::array<float, 8> value{};
-    for (size_t p = 0; p < slots.size(); ++p) {
-      if (slots[p] < 0) {
-        skip(source, element.properties[p]);
-      } else {
-        value[slots[p]] = to_float(source, source.number(element.properties[p].type));
-      }
+void append_vertex(const VertexLayout& layout, const std::array<float, 8>& value,
+                   TriangleMesh& mesh) {
+  mesh.positions.emplace_back(value[0], value[1], value[2]);
+  if (layout.with_normals) mesh.normals.emplace_back(value[3], value[4], value[5]);
+  if (layout.with_uvs) mesh.uvs.emplace_back(value[6], value[7]);
+}
+
+void read_vertex(Source& source, const VertexLayout& layout, TriangleMesh& mesh) {
+  std::array<float, 8> value{};
+  for (size_t p = 0; p < layout.slots.size(); ++p) {
+    const Property& property = layout.element.properties[p];
+    if (layout.slots[p] < 0) {
+      skip(source, property);
+    } else {
+      value[layout.slots[p]] = to_float(source, source.number(property.type));
     }
-    mesh.positions.emplace_back(value[0], value[1], value[2]);
-    if (with_normals) mesh.normals.emplace_back(value[3], value[4], value[5]);
-    if (with_uvs) mesh.uvs.emplace_back(value[6], value[7]);
+  }
+  append_vertex(layout, value, mesh);
+}
+
+// Where each slot's value stands in the row of a vertex, in bytes; nothing unless rows have one
+// length and values are floats.
+struct VertexRows {
+  std::vector<std::pair<int, size_t>> offsets;  // by slot, in the order of the properties
+  size_t stride = 0;
+};
+
+std::optional<VertexRows> vertex_rows(const Source& source, const VertexLayout& layout) {
+  VertexRows rows;
+  for (size_t p = 0; p < layout.slots.size(); ++p) {
+    const Property& property = layout.element.properties[p];
+    if (property.count_type) return std::nullopt;
+    if (layout.slots[p] >= 0) {
+      if (property.type != Scalar::Float32) return std::nullopt;
+      rows.offsets.emplace_back(layout.slots[p], rows.stride);
+    }
+    rows.stride += size_of(property.type);
+  }
+  return source.is_native() ? std::optional(rows) : std::nullopt;
+}
+
+// Takes up to `count` whole rows, and stops at the first one that has a value out of range.
+std::uint64_t take_rows(Source& source, const VertexLayout& layout, const VertexRows& rows,
+                        std::uint64_t count, TriangleMesh& mesh) {
+  count = std::min(count, source.bytes_left() / rows.stride);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    std::array<float, 8> value{};
+    bool in_range = true;
+    for (const auto& [slot, offset] : rows.offsets) {
+      std::memcpy(&value[slot], source.rest() + offset, sizeof(float));
+      in_range &= std::abs(double{value[slot]}) <= largest_coordinate;
+    }
+    if (!in_range) return i;
+    append_vertex(layout, value, mesh);
+    source.take(rows.stride);
+  }
+  return count;
+}
+
+void read_vertices(Source& source, const Element& element, TriangleMesh& mesh) {
+  const VertexLayout layout = vertex_layout(source, element);
+  mesh.positions.reserve(element.count);
+  if (layout.with_normals) mesh.normals.reserve(element.count);
+  if (layout.with_uvs) mesh.uvs.reserve(element.count);
+  std::uint64_t done = 0;
+  if (const auto rows = vertex_rows(source, layout)) {
+    done = take_rows(source, layout, *rows, element.count, mesh);
+  }
+  for (; done < element.count; ++done) read_vertex(source, layout, mesh);
+}
+
+bool is_index_list(const Property& p) {
+  return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
+}
+
+void append_fan(const std::vector<unsigned>& corners, TriangleMesh& mesh) {
+  for (size_t c = 2; c < corners.size(); ++c) {
+    mesh.triangles.emplace_back(corners[0], corners[c - 1], corners[c]);
   }
 }
 
+// Reads faces one by one.
+class FaceReader {
+ public:
+  FaceReader(Source& source, const Element& element, std::uint64_t vertex_count, TriangleMesh& mesh)
+      : source_(source), element_(element), vertex_count_(vertex_count), mesh_(mesh) {}
+
+  // Whether faces are an uchar and so many ints, all as in memory.
+  bool is_plain() const {
+    if (!source_.is_native() || element_.properties.size() != 1) return false;
+    const Property& p = element_.properties[0];
+    return *p.count_type == Scalar::Uint8 && size_of(p.type) == 4 && p.type != Scalar::Float32 &&
+           vertex_count_ <= 1u << 31;  // so that negative indices are too large ones
+  }
+
+  // Takes a plain face; nothing is taken where something is wrong with it.
+  bool take_plain() {
+    if (source_.bytes_left() < 1) return false;
+    const char* rest = source_.rest();
+    const auto count = static_cast<unsigned char>(*rest);
+    const size_t size = 1 + 4 * size_t{count};
+    if (count < 3 || source_.bytes_left() < size) return false;
+    if (count == 3) {
+      std::uint32_t t[3];
+      std::memcpy(t, rest + 1, sizeof t);
+      if (std::max({t[0], t[1], t[2]}) >= vertex_count_) return false;
+      mesh_.triangles.emplace_back(t[0], t[1], t[2]);
+    } else {
+      corners_.resize(count);
+      std::memcpy(corners_.data(), rest + 1, size - 1);
+      if (*std::max_element(corners_.begin(), corners_.end()) >= vertex_count_) return false;
+      append_fan(corners_, mesh_);
+    }
+    source_.take(size);
+    return true;
+  }
+
+  // The same for any face; `number` names it in errors.
+  void read(std::uint64_t number) {
+    for (const Property& p : element_.properties) {
+      if (is_index_list(p)) {
+        read_corners(p, number);
+      } else {
+        skip(source_, p);
+      }
+    }
+  }
+
+ private:
+  void read_corners(const Property& p, std::uint64_t number) {
+    corners_.resize(list_length(source_, p));
+    for (unsigned& corner : corners_) {
+      const double index = source_.number(p.type);
+      if (!(index >= 0.0 && index < static_cast<double>(vertex_count_))) {
+        source_.fail("face " + std::to_string(number) +
+                     " refers to a vertex that does not exist; " + "there are " +
+                     std::to_string(vertex_count_));
+      }
+      corner = static_cast<unsigned>(index);
+    }
+    if (corners_.size() < 3) {
+      source_.fail("face " + std::to_string(number) + " has fewer than three vertices");
+    }
+    append_fan(corners_, mesh_);
+  }
+
+  Source& source_;
+  const Element& element_;
+  std::uint64_t vertex_count_;
+  TriangleMesh& mesh_;
+  std::vector<unsigned> corners_;
+};
+
 void read_faces(Source& source, const Element& element, std::uint64_t vertex_count,
                 TriangleMesh& mesh) {
-  const auto is_index_list = [](const Property& p) {
-    return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
-  };
   if (std::none_of(element.properties.begin(), element.properties.end(), is_index_list)) {
     source.fail("faces lack the list vertex_indices");
   }
-  std::vector<unsigned> corners;
+  // Exact for triangles, of which few files have less than 8 bytes each.
+  if (mesh.triangles.empty()) {
+    mesh.triangles.reserve(std::min(element.count, source.bytes_left() / 8));
+  }
+  FaceReader faces(source, element, vertex_count, mesh);
+  const bool plain = faces.is_plain();
   for (std::uint64_t i = 0; i < element.count; ++i) {
-    for (const Property& p : element.properties) {
-      if (!is_index_list(p)) {
-        skip(source, p);
-        continue;
-      }
-      corners.resize(list_length(source, p));
-      for (unsigned& corner : corners) {
-        const double index = source.number(p.type);
-        if (!(index >= 0.0 && index < static_cast<double>(vertex_count))) {
-          source.fail("face " + std::to_string(i) + " refers to a vertex that does not exist; " +
-                      "there are " + std::to_string(vertex_count));
-        }
-        corner = static_cast<unsigned>(index);
-      }
-      if (corners.size() < 3) {
-        source.fail("face " + std::to_string(i) + " has fewer than three vertices");
-      }
-      for (size_t c = 2; c < corners.size(); ++c) {
-        mesh.triangles.emplace_back(corners[0], corners[c - 1], corners[c]);
-      }
-    }
+    if (!plain || !faces.take_plain()) faces.read(i);
   }
 }
 
@@ -362,6 +528,20 @@ TriangleMesh read_ply(const std::string& path) {
     }
   }
   return mesh;
+}
+
+bool announces_no_face(const std::string& path) {
+  // Most headers are short.
+  for (const size_t most : {size_t{1} << 12, SIZE_MAX}) {
+    try {
+      Source source(path, most);
+      const std::vector<Element> elements = parse_header(source);
+      return std::none_of(elements.begin(), elements.end(),
+                          [](const Element& e) { return e.name == "face" && e.count > 0; });
+    } catch (const Error&) {
+    }
+  }
+  return false;
 }
 
 }  // namespace lockstep

@@ -13,4 +13,7 @@ namespace lockstep {
 // file, where the file is missing, cut short, or refers to a vertex it does not have.
 TriangleMesh read_ply(const std::string& path);
 
+// Whether the header says that the file has no faces; false also where it cannot be read.
+bool announces_no_face(const std::string& path);
+
 }  // namespace lockstep

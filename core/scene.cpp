@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/expand_shapes.h"
 #include "core/flatten.h"
+#include "core/ggx_albedo.h"
 #include "core/opacity.h"
 #include "core/texture_store.h"
 
@@ -108,6 +109,7 @@ struct Scene::Storage {
   TextureStore textures;
   TextureTable texture_table;
   std::optional<EnvironmentMap> environment_map;
+  std::vector<float> ggx_albedo;  // see core/ggx_albedo.h
   FlatScene flat;
   std::vector<Holes> holes;  // per geometry
   DeviceHandle device;
@@ -157,8 +159,10 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
     s.environment_map.emplace(*description.environment);
     environment_radiance = s.environment_map->mean_radiance();
   }
+  if (description.compensate_microfacets) s.ggx_albedo = make_ggx_albedo();
   s.flat = flatten(description, environment_radiance);
   s.fingerprint = lockstep::fingerprint(s.flat) ^ s.textures.fingerprint() * 3u;
+  if (!s.ggx_albedo.empty()) s.fingerprint ^= 7u;
   if (s.environment_map) s.fingerprint ^= s.environment_map->fingerprint() * 5u;
   description.shapes.clear();
   description.objects.clear();
@@ -175,6 +179,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   s.data = view(s.flat);
   s.data.embree_scene = s.scene.get();
   s.data.textures = s.texture_table;
+  if (!s.ggx_albedo.empty()) s.data.materials.ggx_albedo = s.ggx_albedo.data();
   if (s.environment_map) s.data.environment_map = s.environment_map->view();
 }
 

@@ -75,8 +75,9 @@ struct MaterialTable {
 // Point and spot lights: 0 position, 16 intensity; spot lights: 4 cosines of the inner and outer
 // cone and SpotLight::Falloff as a number, 8 those cones' angles, 12 axis. Distant lights:
 // 12 direction in which light travels, 16 irradiance. Environment maps have no more than their
-// row's number and probability. Glowing surfaces are never chosen, only found: 0 the binding of
-// their radiance, a TextureBinding.
+// row's number and probability. Glow, textured emission, is never chosen, only found: 4 the
+// number of its radiance's TextureBinding; else like the flat light, of area 0, or the sphere that
+// it is on.
 enum class LightKind : std::int32_t {
   Parallelogram,
   Triangle,

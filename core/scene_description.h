@@ -75,6 +75,7 @@ struct SceneDescription {
   CameraDescription camera;
   FilmDescription film;
   RenderDefaults defaults;
+  bool compensate_microfacets = false;  // light that metals lose between facets is put back
   std::vector<std::string> warnings;  // one line each, "file:line: what was not understood"
 };
 

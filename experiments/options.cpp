@@ -47,6 +47,11 @@ void add_scene_options(CLI::App& command, RendererOptions& options) {
   add("--environment-scale", options.environment_scale, "X",
       "Times the environment's radiance, the scene's own or the one given")
       ->check(number_between(0, 1e9));
+  command
+      .add_flag("--compensate", options.compensate,
+                "Put back the light that rough metals and principled materials lose\n"
+                "between their microfacets (Turquin 2019)")
+      ->group("Scene");
 }
 
 }  // namespace
@@ -122,6 +127,7 @@ SceneOverrides scene_overrides(const RendererOptions& options) {
   SceneOverrides overrides;
   if (!options.camera.empty()) overrides.camera = parse_camera(options.camera);
   overrides.environment = parse_environment(options.environment, options.environment_scale);
+  overrides.compensate = options.compensate;
   return overrides;
 }
 

@@ -27,6 +27,7 @@ struct RendererOptions {
   std::string isa = "auto";
   std::string camera, environment;
   std::optional<float> environment_scale;
+  bool compensate = false;
 };
 
 // Accepts numbers from `low` to `high`; help shows the option's own words alone.
@@ -37,7 +38,7 @@ void add_renderer_options(CLI::App& command, RendererOptions& options);
 // Threads, width, lanes, instruction set and roulette depth. Throws UsageError, Error.
 RenderSettings render_settings(const RendererOptions& options);
 
-// Camera and environment in place of the scene's. Throws UsageError, Error.
+// What is to be changed about the scene. Throws UsageError, Error.
 SceneOverrides scene_overrides(const RendererOptions& options);
 
 // Reads the scene, prints what of it was not understood, and makes the changes that the options ask

@@ -98,6 +98,7 @@ Metadata override_metadata(const SceneOverrides& overrides) {
   add("environment", to_string(overrides.environment));
   const std::optional<float> scale = overrides.environment.scale;
   add("environment_scale", scale ? fmt::format("{}", *scale) : "");
+  add("compensate", overrides.compensate ? "yes" : "");
   return metadata;
 }
 
@@ -105,6 +106,7 @@ SceneDescription read_scene(const std::string& name, const SceneOverrides& overr
   SceneDescription scene = read_scene(name);
   apply_override(overrides.camera, scene.camera);
   apply_override(overrides.environment, scene.environment);
+  scene.compensate_microfacets = overrides.compensate;
   if (overrides.camera.origin) drop_warnings(scene, "; one that frames all is used");
   if (overrides.environment.kind != Kind::Keep) {
     drop_warnings(scene, "; an environment of radiance 1 is used");

@@ -1,4 +1,4 @@
-// What the command line changes about a scene: its camera and its environment.
+// What the command line changes about a scene: its camera, its environment, its metals.
 #pragma once
 
 #include "core/image.h"
@@ -31,10 +31,11 @@ void apply_override(const EnvironmentOverride& change, std::optional<Environment
 struct SceneOverrides {
   CameraOverride camera;
   EnvironmentOverride environment;
+  bool compensate = false;  // SceneDescription::compensate_microfacets
 };
 
-// For image headers and statistics: "camera", "environment" and "environment_scale" as typed, each
-// only where it changes something.
+// For image headers and statistics: "camera", "environment", "environment_scale" and "compensate" as
+// typed, each only where it changes something.
 Metadata override_metadata(const SceneOverrides& overrides);
 
 // core/read_scene.h's read_scene with the changes made. Throws what it and apply_override() throw.

@@ -3,7 +3,7 @@
 
 #include "core/light.h"
 #include "packets/hits.h"
-#include "packets/shade.h"
+#include "packets/shade_context.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {

@@ -61,8 +61,11 @@ template <int W, FeatureMask F>
           hit & (gather(scene.materials.kinds, material) == I(int(MaterialKind::Mix)));
       if (none(mixed)) break;
       MaterialRows<W> rows;
-      load_textured_rows<W>(scene, material, mixed,
-                            hit_uv<W, F>(scene, rays, hits, i, hit, geometry), rows);
+      Vec2<V> uv(V(0.0f));
+      if (needs<F>(scene, Feature::Textures)) {
+        uv = hit_uv<W, F>(scene, rays, hits, i, hit, geometry);
+      }
+      load_textured_rows<W>(scene, material, mixed, uv, rows);
       const auto row = gather_rows(rows.parameters, lane_indices<W>() * I(material_stride));
       const I path = select(hit, load<I>(rays.path + i), I(0));
       const U key(job.sampler->seed ^ 0x6d697865u);

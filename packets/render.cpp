@@ -93,10 +93,12 @@ class Renderer {
     RenderResult result;
     SamplerState state = make_state(sampler_, stream_seed(settings_.seed, 0),
                                     plan(std::uint32_t(settings_.spp - pilot_spp_)));
-    double weight = sampler_.shared() ? double(state.weight) : 1.0;
+    double weight = sampler_.shared() && image_follows() ? double(state.weight) : 1.0;
     double zero_weights = weight == 0.0 ? 1.0 : 0.0;
     if (pilot_spp_ > 0) {
       render_pilot();
+    }
+    if (pilot_spp_ > 0 && image_follows()) {
       const double before = thread_cpu_seconds();
       result.weights = weights();
       weight = mean_weight(*result.weights);
@@ -117,6 +119,11 @@ class Renderer {
   }
 
  private:
+  // False where all samples go to the pilot, which then is the image: nothing needs weights.
+  bool image_follows() const {
+    return settings_.time_seconds > 0.0 || settings_.spp > pilot_spp_;
+  }
+
   std::uint32_t samples_done() const { return state_.pilot.samples + state_.image.samples; }
 
   // A render for a time does not know its samples: it plans for 16, and again for as many.

@@ -6,89 +6,11 @@
 // ray, and cosine sampling would rarely win there.
 #pragma once
 
-#include "core/bsdf.h"
-#include "core/bsdf/dielectric.h"
-#include "core/bsdf/diffuse_transmission.h"
-#include "core/bsdf/metal.h"
-#include "core/bsdf/oren_nayar.h"
-#include "core/bsdf/principled.h"
-#include "core/ggx_albedo.h"
-#include "core/light.h"
-#include "packets/absorption.h"
-#include "packets/stage_clock.h"
-#include "packets/surface.h"
-#include "samplers/dimensions.h"
+#include "packets/direct_light.h"
 #include "samplers/sampler.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
-
-// Weight of a technique with density `a` against one with density `b`, power heuristic, beta = 2.
-template <class V>
-LOCKSTEP_INLINE V power_heuristic(V a, V b) {
-  const V ratio = b / a;
-  return V(1.0f) / fma(ratio, ratio, V(1.0f));
-}
-
-template <MaterialKind K, class I>
-LOCKSTEP_INLINE auto load_bsdf(const MaterialTable& table, I material) {
-  if constexpr (K == MaterialKind::Diffuse) return load_diffuse(table, material);
-  if constexpr (K == MaterialKind::Conductor) return load_metal(table, material);
-  if constexpr (K == MaterialKind::Coated) return load_coated(table, material);
-  if constexpr (K == MaterialKind::RoughDiffuse) return load_oren_nayar(table, material);
-  if constexpr (K == MaterialKind::DiffuseTransmission) {
-    return load_diffuse_transmission(table, material);
-  }
-  if constexpr (K == MaterialKind::Dielectric) return load_dielectric(table, material);
-  if constexpr (K == MaterialKind::Principled) return load_principled(table, material);
-}
-
-// Models that choose between lobes by a sample of their own.
-constexpr bool has_lobes(MaterialKind kind) {
-  return kind == MaterialKind::Coated || kind == MaterialKind::DiffuseTransmission ||
-         kind == MaterialKind::Dielectric || kind == MaterialKind::Principled;
-}
-
-// What single scattering loses, where it is to be put back.
-template <class V, class Bsdf>
-LOCKSTEP_INLINE void compensate(const SceneData&, const Vec3<V>&, Bsdf&) {}
-template <class V>
-LOCKSTEP_INLINE void compensate(const SceneData& scene, const Vec3<V>& wo, MetalBsdf<V>& bsdf) {
-  const float* table = scene.materials.ggx_albedo;
-  if (table) bsdf.lost = ggx_loss(table, wo.z, bsdf.conductor.ggx.alpha);
-}
-template <class V>
-LOCKSTEP_INLINE void compensate(const SceneData& scene, const Vec3<V>& wo,
-                                PrincipledBsdf<V>& bsdf) {
-  const float* table = scene.materials.ggx_albedo;
-  if (table) bsdf.lost = ggx_loss(table, wo.z, Vec2<V>(bsdf.alpha));
-}
-
-// True where no light can be sampled: all lanes are mirrors or clear glass.
-template <class Bsdf>
-LOCKSTEP_INLINE bool all_delta(const Bsdf&) {
-  return false;
-}
-template <class V>
-LOCKSTEP_INLINE bool all_delta(const MetalBsdf<V>& bsdf) {
-  return all(is_smooth(bsdf.conductor.ggx));
-}
-template <class V>
-LOCKSTEP_INLINE bool all_delta(const DielectricBsdf<V>& bsdf) {
-  return all(is_delta(bsdf));
-}
-
-struct ShadeContext {
-  const SceneData* scene;
-  const TileJob* job;
-  Wave* wave;
-  StageClock* clock;
-  int bounce;  // of this interaction, from 0
-  bool last;   // no further interaction is lit
-
-  const RayQueue& rays() const { return wave->rays[bounce & 1]; }
-  RayQueue& next_rays() const { return wave->rays[(bounce + 1) & 1]; }
-};
 
 // True where a surface of this kind sends a ray on from here.
 template <MaterialKind K, FeatureMask F>
@@ -100,27 +22,6 @@ template <FeatureMask F>
 LOCKSTEP_INLINE bool plays_roulette(const ShadeContext& c) {
   if (needs<F>(*c.scene, Feature::Lens) && c.bounce == 0) return false;  // see lens_pair
   return c.bounce + 1 >= c.job->path.roulette_depth;
-}
-
-// General kernels share what all kinds of material need as functions; others have it inlined.
-template <FeatureMask F>
-inline constexpr bool is_general = F == all_features;
-
-template <class V, FeatureMask F, bool both_sides>
-[[gnu::noinline]] void sample_light_apart(const SceneData& scene, const IntOf<V>& light,
-                                          const Surface<V>& surface, const Vec2<V>& u,
-                                          LightSample<V>& out) {
-  out = sample_light<V, F, both_sides>(scene, light, surface.origin, surface.frame, u);
-}
-template <class V, FeatureMask F, bool both_sides>
-LOCKSTEP_INLINE LightSample<V> sample_light_at(const SceneData& scene, const IntOf<V>& light,
-                                               const Surface<V>& surface, const Vec2<V>& u) {
-  if constexpr (!is_general<F>) {
-    return sample_light<V, F, both_sides>(scene, light, surface.origin, surface.frame, u);
-  }
-  LightSample<V> s;
-  sample_light_apart<V, F, both_sides>(scene, light, surface, u, s);
-  return s;
 }
 
 template <int W, FeatureMask F>
@@ -157,82 +58,6 @@ void draw_samples(const ShadeContext& c) {
   if (needs<F>(*c.scene, Feature::LightChoice) || has_lobes(K)) draw(Purpose::Choice);
   if (continues<K, F>(c)) draw(Purpose::Bsdf);
   if (continues<K, F>(c) && plays_roulette<F>(c)) draw(Purpose::Roulette);
-}
-
-// A direction between the viewer's frame (wo.z > 0) and that of a model that takes both sides,
-// where the outside has z > 0.
-template <class Bsdf, class V>
-LOCKSTEP_INLINE Vec3<V> turned(const Surface<V>& surface, const Vec3<V>& w) {
-  if constexpr (!transmits<Bsdf>) return w;
-  return {w.x, w.y, select(surface.outside, w.z, -w.z)};
-}
-
-// True where a direction, local and in the world, leads to where the model may send light; z > 0 is
-// the viewer's side.
-template <class Bsdf, class V>
-LOCKSTEP_INLINE MaskOf<V> is_possible(const Surface<V>& surface, const Vec3<V>& local,
-                                      const Vec3<V>& world) {
-  const V side = dot(surface.geometric_normal, world);
-  if constexpr (transmits<Bsdf>) return side * local.z > V(0.0f);
-  return (local.z > V(0.0f)) & (side > V(0.0f));
-}
-
-template <class Bsdf, class V>
-LOCKSTEP_INLINE Vec3<V> origin_towards(const Surface<V>& surface, const Vec3<V>& local) {
-  if constexpr (!transmits<Bsdf>) return surface.origin;
-  return select<V>(local.z > V(0.0f), surface.origin, surface.origin_beyond);
-}
-
-// Light sampling: a shadow ray for every lane that may receive something.
-template <FeatureMask F, class Bsdf, class V>
-LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>& surface,
-                                         const Bsdf& bsdf, const Vec3<V>& throughput, int i,
-                                         MaskOf<V> active, bool alone) {
-  using I = IntOf<V>;
-  if (all_delta(bsdf)) return;
-  const SceneData& scene = *c.scene;
-  const ShadeQueue& queue = c.wave->hits_to_shade;
-  const auto value = [&](const FloatArray* a, Purpose p)
-                         LOCKSTEP_LAMBDA { return load<V>(a[int(p)] + i); };
-  const I light = needs<F>(scene, Feature::LightChoice)
-                      ? choose_light(scene.lights, value(queue.u, Purpose::Choice))
-                      : I(0);
-  const LightSample<V> s = sample_light_at<V, F, transmits<Bsdf>>(
-      scene, light, surface,
-      Vec2<V>(value(queue.u, Purpose::Light), value(queue.v, Purpose::Light)));
-  const Vec3<V> wi = surface.frame.to_local(s.wi);
-  MaskOf<V> lit = active & (s.pdf > V(0.0f)) & is_possible<Bsdf>(surface, wi, s.wi);
-  if (none(lit)) return;
-  const BsdfValue<V> f = eval(bsdf, turned<Bsdf>(surface, surface.wo), turned<Bsdf>(surface, wi));
-  V weight = alone ? V(1.0f) : power_heuristic(s.pdf, f.pdf);
-  if (needs_any<F>(scene, delta_light_features)) weight = select(s.delta, V(1.0f), weight);
-  Vec3<V> radiance = throughput * f.f_cos * s.radiance * (weight / s.pdf);
-  if (needs<F>(scene, Feature::Absorption)) {
-    radiance = radiance * transmittance(scene, load<I>(queue.medium + i), s.distance);
-  }
-  lit = lit & !(max_component(radiance) <= V(0.0f));  // NaN goes on, to be counted
-
-  ShadowQueue& out = c.wave->shadows;
-  const Packing<width_of<V>> lanes(lit);
-  pack3(lanes, out.origin, out.count, origin_towards<Bsdf>(surface, wi));
-  pack3(lanes, out.direction, out.count, s.wi);
-  lanes.store(out.distance + out.count, s.distance * V(1.0f - 0x1p-12f));
-  pack3(lanes, out.radiance, out.count, radiance);
-  lanes.store(out.path + out.count, load<I>(queue.path + i));
-  out.count += lanes.count();
-}
-
-// The medium after crossing a dielectric's boundary, or not.
-template <class V>
-LOCKSTEP_INLINE IntOf<V> medium_beyond(const DielectricBsdf<V>& bsdf, const Surface<V>& surface,
-                                       IntOf<V> material, IntOf<V> medium, MaskOf<V> crossed) {
-  using I = IntOf<V>;
-  return select(crossed & !bsdf.thin, select(surface.outside, material, I(-1)), medium);
-}
-template <class Bsdf, class V>
-LOCKSTEP_INLINE IntOf<V> medium_beyond(const Bsdf&, const Surface<V>&, IntOf<V>, IntOf<V> medium,
-                                       MaskOf<V>) {
-  return medium;
 }
 
 // BSDF sampling: the next ray of every path that survives.
@@ -282,23 +107,6 @@ LOCKSTEP_INLINE void continue_paths(const ShadeContext& c, const Surface<V>& sur
   out.count += lanes.count();
 }
 
-// The models of the hits at i..., all of kind K.
-template <int W, MaterialKind K, FeatureMask F>
-LOCKSTEP_INLINE auto load_bsdf_at(const SceneData& scene, const Surface<Float<W>>& surface,
-                                  const Int<W>& material, const Mask<W>& active) {
-  MaterialRows<W> rows;
-  MaterialTable table = scene.materials;
-  Int<W> row = material;
-  if (needs<F>(scene, Feature::Textures)) {
-    load_textured_rows<W>(scene, material, active, surface.uv, rows);
-    table.parameters = rows.parameters;
-    row = lane_indices<W>();
-  }
-  auto bsdf = load_bsdf<K>(table, row);
-  compensate(scene, surface.wo, bsdf);
-  return bsdf;
-}
-
 // Shades the queued hits, all on materials of kind K.
 template <int W, MaterialKind K, FeatureMask F>
 void shade(const ShadeContext& c) {
@@ -325,7 +133,7 @@ void shade(const ShadeContext& c) {
     const auto bsdf = load_bsdf_at<W, K, F>(scene, surface, material, active);
     const Vec3<V> throughput = load3<V>(queue.throughput, i);
     if (scene.lights.count > 0) {
-      sample_direct_light<F>(c, surface, bsdf, throughput, i, active, !go_on);
+      sample_direct_light<F>(c, surface, bsdf, throughput, i, active, material, !go_on);
     }
     if (go_on) {
       const V lobe = has_lobes(K) ? load<V>(queue.v[int(Purpose::Choice)] + i) : V(0.0f);

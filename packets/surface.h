@@ -175,8 +175,11 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
       const V side = select(s.outside, V(1.0f), V(-1.0f));
       const Mask<W> active = lanes_below<W>(i, queue.count);
       const Vec3<V> outer = shading * side;
-      const Vec3<V> mapped =
-          apply_surface_maps<W>(scene, load<I>(queue.material + i), active, t, outer);
+      I material = load<I>(queue.material + i);
+      if (needs<F>(scene, Feature::Mix)) {
+        material = material_with_maps(scene, material, geometry.y);
+      }
+      const Vec3<V> mapped = apply_surface_maps<W>(scene, material, active, t, outer);
       const auto altered = (mapped.x != outer.x) | (mapped.y != outer.y) | (mapped.z != outer.z);
       shading = select<V>(altered, facing_viewer<V>(mapped * side, away), shading);
     }

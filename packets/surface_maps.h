@@ -42,6 +42,15 @@ LOCKSTEP_INLINE Vec3<V> bumped_normal(const TextureTable& textures, const Textur
   return select<V>(usable, tilted * scale, normal);
 }
 
+// Whose maps apply: those of the part of a mix that was chosen, or where it has none the mix's.
+template <class I>
+LOCKSTEP_INLINE I material_with_maps(const SceneData& scene, I part, I whole) {
+  const std::int32_t* maps = scene.materials.maps;
+  const I row = part * I(map_stride);
+  const auto none = (gather(maps + 2, row) < I(0)) & (gather(maps + 3, row) < I(0));
+  return select(none, whole, part);
+}
+
 // `normal` (unit, on the outside) as the maps of the lanes' materials turn it.
 template <int W>
 [[gnu::noinline]] Vec3<Float<W>> apply_surface_maps(const SceneData& scene, const Int<W>& material,

@@ -98,6 +98,88 @@ TEST_F(Pbrt, PlyMeshes) {
   expect_near(mesh_of(scene).positions[2], {1, 1, 2});
 }
 
+std::string ply_with(const std::string& vertices, const std::string& faces) {
+  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(lines(vertices)) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+         std::to_string(lines(faces)) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices + faces;
+}
+
+std::string ply_shape(const std::string& file) {
+  return "Shape \"plymesh\" \"string filename\" \"" + file + "\"\n";
+}
+
+const std::string three_vertices = "0 0 0\n1 0 0\n0 1 0\n";
+
+TEST_F(Pbrt, PlyMeshesStayInTheOrderOfTheirShapes) {
+  std::string text;
+  for (int i = 0; i < 60; ++i) {
+    const std::string file = std::to_string(i) + ".ply";
+    write(file, ply_with("0 0 0\n1 0 0\n0 1 " + std::to_string(i) + "\n", "3 0 1 2\n"));
+    text += ply_shape(file);
+    if (i % 10 == 5) text += "Shape \"sphere\"\n";
+  }
+  const SceneDescription scene = read_world(text);
+  ASSERT_EQ(scene.shapes.size(), 66u);
+  for (size_t i = 0, file = 0; i < scene.shapes.size(); ++i) {
+    if (i % 11 == 6) {
+      sphere_of(scene, i);
+    } else {
+      EXPECT_EQ(mesh_of(scene, i).positions.at(2).z, static_cast<float>(file++));
+    }
+  }
+}
+
+// The first by its place in the scene, however soon a file or the scene itself proves bad.
+TEST_F(Pbrt, TheFirstOfSeveralErrorsIsTold) {
+  std::string points;
+  for (int i = 0; i < 50000; ++i) points += "1 2 3\n";
+  write("good.ply", ply_with(three_vertices, "3 0 1 2\n"));
+  write("empty.ply", ply_with(three_vertices, ""));
+  write("late.ply", ply_with(points, "3 0 1 50000\n"));
+  write("bad.ply", ply_with(three_vertices, "3 0 1 3\n"));
+  write("pointless.ply", ply_with("", ""));
+  const std::string good = ply_shape("good.ply"), late = ply_shape("late.ply");
+  const std::string bad = ply_shape("bad.ply"), lamp = "AreaLightSource \"diffuse\" ";
+  const std::string far = "Scale 3e38 3e38 1e-30 Scale 100 100 1 " + good + "Identity\n";
+  const std::string of_late = "scene.pbrt:4: late.ply:50009: face 0 refers to a vertex";
+  const std::pair<std::string, std::string> cases[] = {
+      {good + good + late + good + bad + bad, of_late},
+      {good + good + late + "Teapot", of_late},
+      {good + good + late + ply_shape("absent.ply"), of_late},
+      {good + good + late + "AttributeBegin\n", of_late},
+      {good + good + late + "NamedMaterial \"x\" " + good, of_late},
+      {"\nObjectBegin \"x\"\n" + late + "ObjectEnd " + good + bad, of_late},
+      {good + "Teapot\n" + bad, "scene.pbrt:3: unknown directive \"Teapot\""},
+      {good + far + late, "scene.pbrt:3: Shape \"plymesh\" has points that leave the range"},
+      {good + ply_shape("empty.ply") + lamp + bad + late, "scene.pbrt:4: bad.ply:12: face 0"},
+  };
+  for (const auto& [text, message] : cases) {
+    expect_one_line_with(message_of([&] { read_world(text); }), message);
+  }
+}
+
+TEST_F(Pbrt, PlyMeshesWithoutFacesAreLeftOut) {
+  write("good.ply", ply_with(three_vertices, "3 0 1 2\n"));
+  write("empty.ply", ply_with(three_vertices, "") + "# " + std::string(10000, 'x'));
+  std::string long_header = ply_with(three_vertices, "");
+  long_header.insert(4, "comment " + std::string(10000, 'x') + "\n");
+  write("long.ply", long_header);
+  const SceneDescription scene = read_world(
+      "Shape \"torus\"\nAreaLightSource \"diffuse\" \"string filename\" \"unused.png\"\n" +
+      ply_shape("long.ply") + ply_shape("empty.ply") +
+      "Shape \"klein\" AreaLightSource \"diffuse\" \"float power\" 1\n" + ply_shape("good.ply"));
+  ASSERT_EQ(scene.warnings.size(), 3u);
+  EXPECT_TRUE(
+      scene.warnings[1].ends_with("scene.pbrt:4: Shape \"plymesh\" has no triangles; "
+                                  "it is left out"));
+  EXPECT_TRUE(scene.textures.empty());
+  ASSERT_EQ(scene.shapes.size(), 1u);
+  // One side of an area of 1/2 emits 1 in all.
+  EXPECT_FLOAT_EQ(scene.shapes[0].emission->radiance.value.x, 2.0f / std::numbers::pi_v<float>);
+}
+
 TEST_F(Pbrt, SpheresAndEllipsoids) {
   const SceneDescription scene = read_world(
       "AttributeBegin Rotate 30 1 2 3 Scale -2 2 2 Shape \"sphere\" \"float radius\" [1.5] "

@@ -94,7 +94,10 @@ INSTANTIATE_TEST_SUITE_P(
         Reference{"killeroo-quad/killeroo-quad.pbrt", "killeroo-quad/reference-depth1.exr", 1, 64},
         Reference{"killeroo-quad/killeroo-quad.pbrt", "killeroo-quad/reference-depth5.exr", 5, 64},
         Reference{"cornell-box/scene-v4.pbrt", "cornell-box/reference-pbrt.exr", 65, 48, 0.15},
-        Reference{"veach-mis/scene-v4.pbrt", "veach-mis/reference-pbrt.exr", 3, 256, 0.1}),
+        Reference{"veach-mis/scene-v4.pbrt", "veach-mis/reference-pbrt.exr", 3, 256, 0.1},
+        Reference{"staircase2/scene-v4.pbrt", "staircase2/reference-pbrt.exr", 65, 48, 0.04},
+        Reference{"veach-ajar/scene-v4.pbrt", "veach-ajar/reference-pbrt.exr", 13, 128, 0.1},
+        Reference{"classroom/scene-v4.pbrt", "classroom/reference-pbrt.exr", 17, 64, 0.07}),
     [](const auto& p) {
       std::string name = p.param.scene;
       name = name.substr(0, name.find('/')) + "Depth" + std::to_string(p.param.depth);

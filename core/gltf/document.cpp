@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -145,8 +147,21 @@ void parse_model(Document& document, const Json& json) {
   }
 }
 
+// By the path they are read from. Each buffer holds its own copy.
+using FileUses = std::map<std::string, int>;
+
+void count_use(const Document& document, const std::string& path, FileUses& uses) {
+  constexpr int most = 16;
+  std::error_code ignored;
+  const std::string file = std::filesystem::weakly_canonical(path, ignored).string();
+  if (++uses[file] > most) {
+    fail(document.path, "more than " + std::to_string(most) + " buffers are the file " + path +
+                            "; use bufferViews of one");
+  }
+}
+
 Bytes load_buffer(const Document& document, int index, const BufferSource& source,
-                  std::string_view binary_chunk) {
+                  std::string_view binary_chunk, FileUses& uses) {
   const std::string name = "buffer " + std::to_string(index);
   std::optional<Bytes> bytes;
   if (!source.uri) {
@@ -158,6 +173,7 @@ Bytes load_buffer(const Document& document, int index, const BufferSource& sourc
     if (!bytes) fail(document.path, name + " has a malformed data URI");
   } else {
     const std::string path = resolve_uri(document.path, *source.uri);
+    count_use(document, path, uses);
     bytes = read_file(path);
     if (!bytes) fail(document.path, name + ": cannot read " + path + "; put it there");
   }
@@ -195,9 +211,10 @@ Document load_document(const std::string& path) {
   json.erase("skins");
   parse_model(document, json);
   check_extensions(document);
+  FileUses uses;
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     tinygltf::Buffer buffer;
-    buffer.data = load_buffer(document, static_cast<int>(i), buffers[i], container.binary);
+    buffer.data = load_buffer(document, static_cast<int>(i), buffers[i], container.binary, uses);
     document.model.buffers.push_back(std::move(buffer));
   }
   return document;

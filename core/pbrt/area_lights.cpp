@@ -60,19 +60,21 @@ std::shared_ptr<AreaLight> make_area_light(const std::string& type, const Parame
   return std::make_shared<AreaLight>(std::move(light));
 }
 
-Emission emission_of(AreaLight& light, const Geometry& geometry, Library& library) {
+Emission emission_of(AreaLight& light, Library& library) {
   Emission emission = light.emission;
-  if (light.power > 0.0f) {
-    const double sides = emission.two_sided ? 2.0 : 1.0;
-    const double surface = std::visit([](const auto& shape) { return area(shape); }, geometry);
-    const double unit_power = sides * surface * std::numbers::pi;
-    if (unit_power > 0.0) emission.radiance.value *= float(double(light.power) / unit_power);
-  }
   if (light.image) {
     if (light.texture < 0) light.texture = add_texture(library, *light.image);
     emission.radiance.texture = light.texture;
   }
   return emission;
+}
+
+void set_power(float power, const Geometry& geometry, Emission& emission) {
+  if (power <= 0.0f) return;
+  const double sides = emission.two_sided ? 2.0 : 1.0;
+  const double surface = std::visit([](const auto& shape) { return area(shape); }, geometry);
+  const double unit_power = sides * surface * std::numbers::pi;
+  if (unit_power > 0.0) emission.radiance.value *= float(double(power) / unit_power);
 }
 
 }  // namespace lockstep::pbrt

@@ -19,8 +19,11 @@ glm::vec3 get_light_color(const ParameterSet& parameters, const char* name, Libr
 std::shared_ptr<AreaLight> make_area_light(const std::string& type, const ParameterSet& parameters,
                                            Library& library);
 
-// What a shape emits under `light`.
-Emission emission_of(AreaLight& light, const Geometry& geometry, Library& library);
+// What shapes emit under `light`, its power aside.
+Emission emission_of(AreaLight& light, Library& library);
+
+// Scales `emission` so that `geometry` emits `power` in all, if that is above 0.
+void set_power(float power, const Geometry& geometry, Emission& emission);
 
 // A light at a point or from one direction; nothing, with a warning, for other types.
 std::optional<LightSource> make_light(const std::string& type, const ParameterSet& parameters,

@@ -39,18 +39,23 @@ void turn_over(TriangleMesh& mesh) {
   for (glm::vec3& n : mesh.normals) n = -n;
 }
 
-TriangleMesh to_world(TriangleMesh mesh, const ParameterSet& set, const ShapeContext& context) {
-  apply_transform(mesh, glm::mat4(context.object_to_world));
+TriangleMesh to_world(TriangleMesh mesh, const Placement& placement) {
+  apply_transform(mesh, placement.to_world);
   const auto is_finite = [](glm::vec3 p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   };
   if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite)) {
-    fail(set.where(), set.owner() + " has points that leave the range of float in world space");
+    fail(placement.where,
+         placement.owner + " has points that leave the range of float in world space");
   }
   repair_normals(mesh);
-  if (context.reverse_orientation) turn_over(mesh);
+  if (placement.reverse_orientation) turn_over(mesh);
   agree_with_normals(mesh);
   return mesh;
+}
+
+TriangleMesh to_world(TriangleMesh mesh, const ParameterSet& set, const ShapeContext& context) {
+  return to_world(std::move(mesh), placement_of(set, context));
 }
 
 }  // namespace lockstep::pbrt

@@ -7,6 +7,7 @@ namespace lockstep::pbrt {
 
 // `mesh` in world space, its winding on the side that pbrt says (see make_shape), its normals of
 // length 1. Throws where points leave the range of float.
+TriangleMesh to_world(TriangleMesh mesh, const Placement& placement);
 TriangleMesh to_world(TriangleMesh mesh, const ParameterSet& parameters,
                       const ShapeContext& context);
 

@@ -1,5 +1,6 @@
 // Scene files of pbrt-v2, v3 and v4 (pbrt.org/fileformat, fileformat-v3, fileformat-v4).
 #include "core/pbrt/directives.h"
+#include "core/pbrt/lights.h"
 #include "core/pbrt/surfaces.h"
 #include "core/read_scene.h"
 
@@ -20,6 +21,28 @@ Version version_of(const State& state) {
   if (state.v2_directive) return Version::v2;
   if (!state.film_type.empty()) return state.film_type == "image" ? Version::v3 : Version::v4;
   return state.world_ended ? Version::v3 : Version::v4;
+}
+
+// Gives shapes the geometry of their files.
+void settle_mesh_files(State& state) {
+  std::vector<TriangleMesh> meshes = read_mesh_files(state.mesh_files);
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    const auto& [shapes, index, power] = state.file_shapes[i];
+    Shape& shape = (*shapes)[index];
+    shape.geometry = std::move(meshes[i]);
+    if (shape.emission) set_power(power, shape.geometry, *shape.emission);
+  }
+}
+
+// An error in a mesh's file is the scene's if the shape stands before any other error.
+void read_files(State& state, const std::string& path) {
+  try {
+    read_file(state, path, {});
+  } catch (const Error&) {
+    read_mesh_files(state.mesh_files);
+    throw;
+  }
+  settle_mesh_files(state);
 }
 
 void check_complete(const State& state) {
@@ -61,7 +84,7 @@ SceneDescription read_pbrt(const std::string& path) {
   state.scene.name = std::filesystem::path(path).stem().string();
   // Of shapes before the first Material.
   state.library.materials.push_back({"diffuse", pbrt::ParameterSet("Material \"diffuse\""), 0});
-  pbrt::read_file(state, path, {});
+  pbrt::read_files(state, path);
   pbrt::check_complete(state);
   state.library.version = pbrt::version_of(state);
   pbrt::finish_view(state);

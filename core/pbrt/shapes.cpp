@@ -5,7 +5,11 @@
 #include "core/pbrt/quadrics.h"
 #include "core/ply.h"
 
+#include <tbb/parallel_for.h>
+
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <numeric>
 #include <stdexcept>
 #include <string_view>
@@ -82,14 +86,22 @@ TriangleMesh bilinear_mesh(const ParameterSet& set, const ShapeContext&) {
   return triangulate_patches(vertices, read_indices(set, 4, vertices.positions.size()));
 }
 
-TriangleMesh ply_mesh(const ParameterSet& set, const ShapeContext& context) {
+std::string ply_file(const ParameterSet& set, const ShapeContext& context) {
   const std::string name = set.get_string("filename", "");
   if (name.empty()) fail(set.where(), set.owner() + " needs \"string filename\"");
+  return context.resolve(name);
+}
+
+TriangleMesh read_ply_of_shape(const std::string& path, const Location& where) {
   try {
-    return read_ply(context.resolve(name));
+    return read_ply(path);
   } catch (const Error& error) {
-    fail(set.where(), error.what());
+    fail(where, error.what());
   }
+}
+
+TriangleMesh ply_mesh(const ParameterSet& set, const ShapeContext& context) {
+  return read_ply_of_shape(ply_file(set, context), set.where());
 }
 
 TriangleMesh loop_surface(const ParameterSet& set, const ShapeContext& context) {
@@ -137,10 +149,55 @@ std::optional<Geometry> make_quadric(const std::string& type, const ParameterSet
   return std::nullopt;
 }
 
+// Only files that have a surface can wait: whether a shape is left out decides what its light adds
+// to the scene.
+std::optional<MeshFile> find_mesh_file(const std::string& type, const ParameterSet& set,
+                                       const ShapeContext& context) {
+  if (type != "plymesh") return std::nullopt;
+  std::string path = ply_file(set, context);
+  if (announces_no_face(path)) return std::nullopt;
+  return MeshFile{std::move(path), placement_of(set, context)};
+}
+
+// Lowers `value` to `other`.
+void lower(std::atomic<size_t>& value, size_t other) {
+  for (size_t now = value; other < now && !value.compare_exchange_weak(now, other);) {
+  }
+}
+
 }  // namespace
 
-std::optional<Geometry> make_shape(const std::string& type, const ParameterSet& set,
-                                   const ShapeContext& context, Warnings& warnings) {
+Placement placement_of(const ParameterSet& set, const ShapeContext& context) {
+  return {set.where(), set.owner(), glm::mat4(context.object_to_world),
+          context.reverse_orientation};
+}
+
+std::vector<TriangleMesh> read_mesh_files(const std::vector<MeshFile>& files) {
+  std::vector<TriangleMesh> meshes(files.size());
+  std::vector<std::exception_ptr> errors(files.size());
+  std::atomic<size_t> first_bad = files.size();
+  tbb::parallel_for(size_t{0}, files.size(), [&](size_t i) {
+    if (i > first_bad) return;
+    const auto& [path, placement] = files[i];
+    try {
+      meshes[i] = to_world(read_ply_of_shape(path, placement.where), placement);
+    } catch (...) {
+      errors[i] = std::current_exception();
+      lower(first_bad, i);
+    }
+  });
+  if (first_bad < files.size()) std::rethrow_exception(errors[first_bad]);
+  return meshes;
+}
+
+std::optional<std::variant<Geometry, MeshFile>> make_shape(const std::string& type,
+                                                           const ParameterSet& set,
+                                                           const ShapeContext& context,
+                                                           Warnings& warnings) {
+  if (std::optional<MeshFile> file = find_mesh_file(type, set, context)) {
+    set.warn_unused(warnings);
+    return *file;
+  }
   if (std::optional<Geometry> quadric = make_quadric(type, set, context, warnings)) {
     set.warn_unused(warnings);
     return quadric;
@@ -149,7 +206,7 @@ std::optional<Geometry> make_shape(const std::string& type, const ParameterSet& 
     if (known.name != type) continue;
     TriangleMesh mesh = known.make(set, context);
     set.warn_unused(warnings);
-    if (!mesh.triangles.empty()) return to_world(std::move(mesh), set, context);
+    if (!mesh.triangles.empty()) return Geometry(to_world(std::move(mesh), set, context));
     warnings.add(set.where(), set.owner() + " has no triangles; it is left out");
     return std::nullopt;
   }

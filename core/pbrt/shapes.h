@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace lockstep::pbrt {
 
@@ -22,6 +23,26 @@ struct ShapeContext {
   std::function<std::string(const std::string&)> resolve;
 };
 
+// Where the shape that `owner` names stands, in the file and in the world.
+struct Placement {
+  Location where;
+  std::string owner;
+  glm::mat4 to_world{1.0f};
+  bool reverse_orientation = false;
+};
+
+Placement placement_of(const ParameterSet& parameters, const ShapeContext& context);
+
+// A mesh in a file of its own, which is read when the whole scene has been.
+struct MeshFile {
+  std::string path;
+  Placement placement;
+};
+
+// The meshes of `files`, in their order and in world space. Reads several at a time. Throws what is
+// wrong with the first bad one.
+std::vector<TriangleMesh> read_mesh_files(const std::vector<MeshFile>& files);
+
 // The shape `type`; nothing, with a warning, where it is not supported or has no surface.
 //
 // The side that emits follows pbrt: cross(p1 - p0, p2 - p0) in object space, turned by
@@ -29,7 +50,9 @@ struct ShapeContext {
 // ReverseOrientation, overrule it. We turn the winding, which is what tells the side here. A sphere
 // emits outwards unless reversed. (Under a mirroring transform pbrt's own sphere light samples
 // one side and its emission test the other; we keep to the side that it samples.)
-std::optional<Geometry> make_shape(const std::string& type, const ParameterSet& parameters,
-                                   const ShapeContext& context, Warnings& warnings);
+std::optional<std::variant<Geometry, MeshFile>> make_shape(const std::string& type,
+                                                           const ParameterSet& parameters,
+                                                           const ShapeContext& context,
+                                                           Warnings& warnings);
 
 }  // namespace lockstep::pbrt

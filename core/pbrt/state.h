@@ -3,6 +3,7 @@
 
 #include "core/pbrt/library.h"
 #include "core/pbrt/parameters.h"
+#include "core/pbrt/shapes.h"
 #include "core/pbrt/view.h"
 #include "core/scene_description.h"
 
@@ -66,6 +67,13 @@ struct ObjectDeclaration {
   int scene_index = -1;  // once it is placed
 };
 
+// The shape whose geometry is to come from a file: shapes[index].
+struct ShapeReference {
+  std::vector<Shape>* shapes = nullptr;
+  size_t index = 0;
+  float power = 0.0f;  // see AreaLight
+};
+
 struct InstanceReference {
   std::string name;
   int order = 0;
@@ -84,6 +92,8 @@ struct State {
   NameTable<ObjectDeclaration> objects;
   ObjectDeclaration* open_object = nullptr;
   std::vector<InstanceReference> instances;
+  std::vector<MeshFile> mesh_files;
+  std::vector<ShapeReference> file_shapes;  // one per mesh file
   std::map<std::string, glm::dmat4> coordinate_systems;
 
   ScreenWindow window;

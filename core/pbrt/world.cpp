@@ -172,20 +172,27 @@ void shape(State& state, const Call& call) {
   context.resolve = [&](const std::string& name) {
     return resolve(state.library, call.where.file, name);
   };
-  std::optional<Geometry> geometry = make_shape(type, set, context, state.library.warnings);
-  if (!geometry) return;
+  auto found = make_shape(type, set, context, state.library.warnings);
+  if (!found) return;
+  Shape made;
+  if (auto* geometry = std::get_if<Geometry>(&*found)) made.geometry = std::move(*geometry);
   if (type == "loopsubdiv") {
-    state.triangles_left -= double(std::get<TriangleMesh>(*geometry).triangles.size());
+    state.triangles_left -= double(std::get<TriangleMesh>(made.geometry).triangles.size());
   }
 
-  Shape made{std::move(*geometry), add_surface(state, std::move(surface)), {}};
+  made.material = add_surface(state, std::move(surface));
   AreaLight* light = state.attributes.area_light.get();
   if (light != nullptr && state.open_object != nullptr) {
     state.library.warnings.add(call.where, "shapes of objects do not emit; place them without one");
   } else if (light != nullptr) {
-    made.emission = emission_of(*light, made.geometry, state.library);
+    made.emission = emission_of(*light, state.library);
+    set_power(light->power, made.geometry, *made.emission);
   }
   auto& shapes = state.open_object != nullptr ? state.open_object->shapes : state.scene.shapes;
+  if (auto* file = std::get_if<MeshFile>(&*found)) {
+    state.mesh_files.push_back(std::move(*file));
+    state.file_shapes.push_back({&shapes, shapes.size(), light != nullptr ? light->power : 0.0f});
+  }
   shapes.push_back(std::move(made));
 }
 
