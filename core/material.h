@@ -2,8 +2,8 @@
 // core/flatten_materials.cpp, its kernel in core/bsdf/, and its lines in packets/bsdf_models.h and
 // packets/path.h.
 //
-// Reflectances are linear RGB in [0, 1]; alpha is GGX's roughness parameter, 0 for a smooth surface;
-// eta is relative to the outside.
+// Reflectances are linear RGB in [0, 1]; alpha is GGX's roughness parameter, 0 for a smooth
+// surface; eta is relative to the outside.
 #pragma once
 
 #include "core/texture_description.h"

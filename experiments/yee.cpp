@@ -69,7 +69,7 @@ Display displayed(const Image& image, const YeeSettings& settings) {
 
 constexpr int kRadius = 2;
 constexpr std::array<float, 5> kWeights = {0.05f, 0.25f, 0.4f, 0.25f, 0.05f};
-constexpr int kBlock = 16;  // sums kept in registers
+constexpr int kSumBlock = 16;  // sums kept in registers
 
 // Mirrored at the borders of n pixels, which the far one repeats.
 int mirrored(int i, int n) {
@@ -81,12 +81,12 @@ int mirrored(int i, int n) {
 // `count` sums over 5 x 5 pixels whose first columns begin at `rows`. Where areas are flat, all
 // their pixels are at the threshold or none: the order of the additions is perceptualdiff's.
 void blur(const std::array<const float*, 5>& rows, int count, float* sums) {
-  float block[kBlock] = {};
+  float block[kSumBlock] = {};
   for (std::size_t i = 0; i < 5; ++i) {
     for (std::size_t j = 0; j < 5; ++j) {
       const float weight = kWeights[i] * kWeights[j];
       const float* from = rows[j] + i;
-      for (int k = 0; k < kBlock; ++k) block[k] += weight * from[k];
+      for (int k = 0; k < kSumBlock; ++k) block[k] += weight * from[k];
     }
   }
   std::copy_n(block, count, sums);
@@ -94,8 +94,8 @@ void blur(const std::array<const float*, 5>& rows, int count, float* sums) {
 
 // The image with mirrored columns to the left and right, whole blocks wide.
 Image widened(const Image& image) {
-  const int blocks = (image.width + kBlock - 1) / kBlock;
-  Image wide(blocks * kBlock + 2 * kRadius, image.height, 1);
+  const int blocks = (image.width + kSumBlock - 1) / kSumBlock;
+  Image wide(blocks * kSumBlock + 2 * kRadius, image.height, 1);
   tbb::parallel_for(0, image.height, [&](int y) {
     std::copy_n(image.at(0, y), image.width, wide.at(kRadius, y));
     for (int i = 1; i <= kRadius; ++i) {
@@ -111,12 +111,12 @@ Image blurred(const Image& image) {
   const Image wide = widened(image);
   Image result(image.width, image.height, 1);
   tbb::parallel_for(0, image.height, [&](int y) {
-    for (int x = 0; x < image.width; x += kBlock) {
+    for (int x = 0; x < image.width; x += kSumBlock) {
       std::array<const float*, 5> rows;
       for (int j = 0; j < 5; ++j) {
         rows[std::size_t(j)] = wide.at(x, mirrored(y + j - kRadius, image.height));
       }
-      blur(rows, std::min(kBlock, image.width - x), result.at(x, y));
+      blur(rows, std::min(kSumBlock, image.width - x), result.at(x, y));
     }
   });
   return result;

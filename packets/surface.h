@@ -116,28 +116,86 @@ LOCKSTEP_INLINE Vec3<V> facing_viewer(const Vec3<V>& normal, const Vec3<V>& away
   return select<V>(cosine < V(least), bent, normal);
 }
 
+template <FeatureMask F, class I>
+LOCKSTEP_INLINE bool any_instance(const SceneData& scene, I instance) {
+  return needs<F>(scene, Feature::Instances) && any(!(instance < I(0)));
+}
+
+// The lanes' triangles in the world.
+template <class V>
+struct PlacedTriangle {
+  Corners<V> corners;
+  Vec3<V> normal;  // of any length, to where the winding says outside is
+  V magnitude;     // see HitPoint
+};
+
+template <FeatureMask F, class I>
+LOCKSTEP_INLINE PlacedTriangle<FloatOf<I>> place_triangle(const SceneData& scene,
+                                                          const Vec3<I>& vertices, I instance) {
+  using V = FloatOf<I>;
+  Corners<V> p = load_corners(scene.positions, vertices);
+  V magnitude = largest_coordinate(p), handedness(1.0f);
+  if (any_instance<F>(scene, instance)) {
+    const MatrixRows<V> m = load_matrix(scene, instance, 0);
+    p = {m.affine(p.a), m.affine(p.b), m.affine(p.c)};
+    // Rounded on the way to the world, and rays again on their way back.
+    magnitude = select(instance < I(0), magnitude, V(4.0f) * m.largest(magnitude));
+    handedness = load_matrix(scene, instance, 1).x.w;
+  }
+  return {p, cross<V>(p.b - p.a, p.c - p.a) * handedness, magnitude};
+}
+
+// Turns the shading normal, at first the geometric one, to that between the lanes' vertices.
+template <FeatureMask F, class I, class V = FloatOf<I>>
+LOCKSTEP_INLINE void smooth_normal(const SceneData& scene, const Vec3<I>& vertices, I instance,
+                                   I flags, V u, V v, const Vec3<V>& away, Surface<V>& s,
+                                   Vec3<V>& shading) {
+  Vec3<V> between = load_corners(scene.normals, vertices).at(u, v);
+  if (any_instance<F>(scene, instance)) {
+    between = load_matrix(scene, instance, 1).linear(between);
+  }
+  const Vec3<V> n = normalize_any(between);
+  const MaskOf<V> smooth = (flags & I(geometry_is_smooth)) != I(0);
+  const MaskOf<V> turned = dot(n, s.geometric_normal) < V(0.0f);
+  // Vertex normals say where the outside is, whatever the winding.
+  s.outside = select(smooth, MaskOf<V>(!turned), s.outside);
+  const Vec3<V> facing = select<V>(turned, -n, n);
+  // Where interpolation turns the normal away from the viewer, the geometric one serves.
+  shading = select<V>(smooth & (dot(facing, away) > V(1e-4f)), facing, shading);
+}
+
+// Turns the shading normal to what the materials' normal and bump maps make of it.
+template <int W, FeatureMask F>
+LOCKSTEP_INLINE void turn_by_maps(const SceneData& scene, const ShadeQueue& queue, int i,
+                                  const Int<W>& material_of_geometry,
+                                  const TextureCoordinates<Float<W>>& t, const Vec3<Float<W>>& away,
+                                  const Surface<Float<W>>& s, Vec3<Float<W>>& shading) {
+  using V = Float<W>;
+  Int<W> material = load<Int<W>>(queue.material + i);
+  if (needs<F>(scene, Feature::Mix)) {
+    material = material_with_maps(scene, material, material_of_geometry);
+  }
+  const V side = select(s.outside, V(1.0f), V(-1.0f));
+  const Vec3<V> outer = shading * side;
+  const Vec3<V> mapped =
+      apply_surface_maps<W>(scene, material, lanes_below<W>(i, queue.count), t, outer);
+  const auto altered = (mapped.x != outer.x) | (mapped.y != outer.y) | (mapped.z != outer.z);
+  shading = select<V>(altered, facing_viewer<V>(mapped * side, away), shading);
+}
+
 // The surface at entries i... of the queue, whose geometries have these rows.
 template <int W, FeatureMask F>
 LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const ShadeQueue& queue,
                                                int i, const Rows<Int<W>>& geometry) {
   using V = Float<W>;
   using I = Int<W>;
-  const Vec3<V> direction = load3<V>(queue.direction, i);
+  const Vec3<V> direction = load3<V>(queue.direction, i), away = -direction;
   const Vec3<I> vertices = load_vertices(scene, geometry, load<I>(queue.primitive + i));
   const V u = load<V>(queue.barycentric_u + i), v = load<V>(queue.barycentric_v + i);
-  Corners<V> corners = load_corners(scene.positions, vertices);
-  V magnitude = largest_coordinate(corners), handedness(1.0f);
   const I instance = needs<F>(scene, Feature::Instances) ? load<I>(queue.instance + i) : I(-1);
-  const bool instanced = needs<F>(scene, Feature::Instances) && any(!(instance < I(0)));
-  if (instanced) {
-    const MatrixRows<V> m = load_matrix(scene, instance, 0);
-    corners = {m.affine(corners.a), m.affine(corners.b), m.affine(corners.c)};
-    // Rounded on the way to the world, and rays again on their way back.
-    magnitude = select(instance < I(0), magnitude, V(4.0f) * m.largest(magnitude));
-    handedness = load_matrix(scene, instance, 1).x.w;
-  }
-  HitPoint<V> hit{corners.at(u, v), magnitude};
-  Vec3<V> normal = cross<V>(corners.b - corners.a, corners.c - corners.a) * handedness;
+  const PlacedTriangle<V> triangle = place_triangle<F>(scene, vertices, instance);
+  HitPoint<V> hit{triangle.corners.at(u, v), triangle.magnitude};
+  Vec3<V> normal = triangle.normal;
   if (needs<F>(scene, Feature::Spheres)) {
     const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
     const Vec3<V> on_ray = fma(load<V>(queue.distance + i), direction, load3<V>(queue.origin, i));
@@ -146,7 +204,6 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
 
   Surface<V> s;
   const Vec3<V> unit = normalize_any(normal);
-  const Vec3<V> away = -direction;
   const Mask<W> behind = dot(unit, away) < V(0.0f);
   s.outside = !behind;
   s.geometric_normal = select<V>(behind, -unit, unit);
@@ -154,43 +211,21 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
   s.origin = fma(offset, s.geometric_normal, hit.position);
   s.origin_beyond = fma(-offset, s.geometric_normal, hit.position);
 
-  Vec3<V> shading = s.geometric_normal;
+  Vec3<V> shading = s.geometric_normal, tangent(V(0.0f));
   if (needs<F>(scene, Feature::SmoothNormals)) {
-    Vec3<V> interpolated = load_corners(scene.normals, vertices).at(u, v);
-    if (instanced) interpolated = load_matrix(scene, instance, 1).linear(interpolated);
-    const Vec3<V> n = normalize_any(interpolated);
-    const Mask<W> smooth = (geometry.w & I(geometry_is_smooth)) != I(0);
-    const Mask<W> turned = dot(n, s.geometric_normal) < V(0.0f);
-    // Vertex normals say where the outside is, whatever the winding.
-    s.outside = select(smooth, Mask<W>(!turned), s.outside);
-    const Vec3<V> facing = select<V>(turned, -n, n);
-    // Where interpolation turns the normal away from the viewer, the geometric one serves.
-    shading = select<V>(smooth & (dot(facing, away) > V(1e-4f)), facing, shading);
+    smooth_normal<F>(scene, vertices, instance, geometry.w, u, v, away, s, shading);
   }
   if (needs_any<F>(scene, uv_features)) {
     const TextureCoordinates<V> t =
-        load_coordinates<W, F>(scene, queue, i, geometry, vertices, corners, unit);
+        load_coordinates<W, F>(scene, queue, i, geometry, vertices, triangle.corners, unit);
     s.uv = t.uv;
+    tangent = t.du;
     if (needs<F>(scene, Feature::SurfaceMaps)) {
-      const V side = select(s.outside, V(1.0f), V(-1.0f));
-      const Mask<W> active = lanes_below<W>(i, queue.count);
-      const Vec3<V> outer = shading * side;
-      I material = load<I>(queue.material + i);
-      if (needs<F>(scene, Feature::Mix)) {
-        material = material_with_maps(scene, material, geometry.y);
-      }
-      const Vec3<V> mapped = apply_surface_maps<W>(scene, material, active, t, outer);
-      const auto altered = (mapped.x != outer.x) | (mapped.y != outer.y) | (mapped.z != outer.z);
-      shading = select<V>(altered, facing_viewer<V>(mapped * side, away), shading);
+      turn_by_maps<W, F>(scene, queue, i, geometry.y, t, away, s, shading);
     }
-    if (needs<F>(scene, Feature::Tangents)) {
-      s.frame = frame_along(shading, t.du);
-    } else {
-      s.frame = frame_around(shading);
-    }
-  } else {
-    s.frame = frame_around(shading);
   }
+  s.frame =
+      needs<F>(scene, Feature::Tangents) ? frame_along(shading, tangent) : frame_around(shading);
   s.wo = s.frame.to_local(away);
   s.wo.z = max(s.wo.z, V(1e-6f));  // a grazing ray may round to below the horizon
   return s;
