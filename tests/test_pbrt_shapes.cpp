@@ -137,13 +137,14 @@ TEST_F(Pbrt, TheFirstOfSeveralErrorsIsTold) {
   for (int i = 0; i < 50000; ++i) points += "1 2 3\n";
   write("good.ply", ply_with(three_vertices, "3 0 1 2\n"));
   write("empty.ply", ply_with(three_vertices, ""));
+  write("far.ply", ply_with("0 0 0\n1e15 0 0\n0 1 0\n", "3 0 1 2\n"));
   write("late.ply", ply_with(points, "3 0 1 50000\n"));
+  write("headless.ply", "ply\nformat ascii 1.0\nend_header\n");
   write("bad.ply", ply_with(three_vertices, "3 0 1 3\n"));
-  write("pointless.ply", ply_with("", ""));
   const std::string good = ply_shape("good.ply"), late = ply_shape("late.ply");
   const std::string bad = ply_shape("bad.ply"), lamp = "AreaLightSource \"diffuse\" ";
-  const std::string far = "Scale 3e38 3e38 1e-30 Scale 100 100 1 " + good + "Identity\n";
-  const std::string of_late = "scene.pbrt:4: late.ply:50009: face 0 refers to a vertex";
+  const std::string far = "Scale 1e25 1 1 " + ply_shape("far.ply") + "Identity\n";
+  const std::string of_late = "scene.pbrt:4: late.ply:50010: face 0 refers to a vertex";
   const std::pair<std::string, std::string> cases[] = {
       {good + good + late + good + bad + bad, of_late},
       {good + good + late + "Teapot", of_late},
@@ -153,7 +154,8 @@ TEST_F(Pbrt, TheFirstOfSeveralErrorsIsTold) {
       {"\nObjectBegin \"x\"\n" + late + "ObjectEnd " + good + bad, of_late},
       {good + "Teapot\n" + bad, "scene.pbrt:3: unknown directive \"Teapot\""},
       {good + far + late, "scene.pbrt:3: Shape \"plymesh\" has points that leave the range"},
-      {good + ply_shape("empty.ply") + lamp + bad + late, "scene.pbrt:4: bad.ply:12: face 0"},
+      {good + ply_shape("empty.ply") + lamp + bad + late, "scene.pbrt:4: bad.ply:13: face 0"},
+      {good + ply_shape("headless.ply") + bad, "scene.pbrt:3: headless.ply:4: the file has no el"},
   };
   for (const auto& [text, message] : cases) {
     expect_one_line_with(message_of([&] { read_world(text); }), message);

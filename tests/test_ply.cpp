@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -94,6 +95,30 @@ TEST_F(Ply, BinaryOfBothByteOrdersAndCountTypes) {
       }
     }
   }
+}
+
+// Rows of floats and plain faces are taken whole; what is wrong with one must still be told.
+TEST_F(Ply, BrokenBinaryRowsSayWhat) {
+  const auto file = [](float coordinate, std::vector<std::int32_t> face) {
+    std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\n"
+        "property float y\nproperty float z\nelement face 2\n"
+        "property list uchar int vertex_indices\nend_header\n";
+    for (int i = 0; i < 12; ++i) append(bytes, i == 7 ? coordinate : 1.0f, false);
+    for (const std::vector<std::int32_t>& corners : {std::vector<std::int32_t>{0, 1, 2}, face}) {
+      append(bytes, static_cast<std::uint8_t>(corners.size()), false);
+      for (const std::int32_t i : corners) append(bytes, i, false);
+    }
+    return bytes;
+  };
+  const auto message = [&](const std::string& bytes) { return error_of([&] { read(bytes); }); };
+  EXPECT_EQ(read(file(-1e18f, {3, 2, 1, 0})).triangles.size(), 3u);
+  expect_one_line_with(message(file(NAN, {0, 1, 2})), "a coordinate that is not finite");
+  expect_one_line_with(message(file(INFINITY, {0, 1, 2})), "a coordinate that is not finite");
+  expect_one_line_with(message(file(-2e18f, {0, 1, 2})), "a coordinate beyond 1e18");
+  expect_one_line_with(message(file(0.0f, {0, 1, 4})), "face 1 refers to a vertex");
+  expect_one_line_with(message(file(0.0f, {0, 1, 2, -1})), "face 1 refers to a vertex");
+  expect_one_line_with(message(file(0.0f, {0, 1})), "face 1 has fewer than three vertices");
 }
 
 TEST_F(Ply, BrokenFilesSayWhereAndWhat) {

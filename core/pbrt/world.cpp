@@ -186,6 +186,7 @@ void shape(State& state, const Call& call) {
     state.library.warnings.add(call.where, "shapes of objects do not emit; place them without one");
   } else if (light != nullptr) {
     made.emission = emission_of(*light, state.library);
+    // A mesh that is still to be read has no area, which leaves the emission as it is.
     set_power(light->power, made.geometry, *made.emission);
   }
   auto& shapes = state.open_object != nullptr ? state.open_object->shapes : state.scene.shapes;
