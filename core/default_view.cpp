@@ -31,13 +31,14 @@ void add_default_camera(SceneDescription& scene) {
     // In double: the squares of large coordinates leave float's range.
     radius = float(0.5 * glm::length(glm::dvec3(bounds.hi) - glm::dvec3(bounds.lo)));
   }
-  if (!(radius > 0.0f && std::isfinite(radius))) radius = 1.0f;
+  if (!(radius > 0.0f && radius < 1e30f)) radius = 1.0f;
 
   CameraDescription camera;
   camera.fov_degrees = 40.0f;
   const float distance = radius / std::sin(0.5f * glm::radians(camera.fov_degrees));
-  const glm::vec3 eye = center + distance * glm::normalize(glm::vec3(1.0f, 0.6f, 1.0f));
-  camera.camera_to_world = builtin::look_at(eye, center);
+  const glm::vec3 aside = glm::normalize(glm::vec3(1.0f, 0.6f, 1.0f));
+  camera.camera_to_world = builtin::look_at(aside, glm::vec3(0.0f));
+  camera.camera_to_world[3] = glm::vec4(center + distance * aside, 1.0f);
   camera.focal_distance = distance;
   scene.camera = camera;
   scene.warnings.push_back(scene.name + ": the file has no camera; one that frames all is used");
