@@ -1,5 +1,14 @@
 # The instruction sets that kernels are compiled for, once each from the same sources.
-set(LOCKSTEP_ISAS sse4 avx2 avx512)
+set(LOCKSTEP_ISAS sse4 avx2 avx512 CACHE STRING
+    "Instruction sets to compile kernels for, any of sse4, avx2, avx512")
+foreach(isa ${LOCKSTEP_ISAS})
+  if(NOT isa MATCHES "^(sse4|avx2|avx512)$")
+    message(FATAL_ERROR "LOCKSTEP_ISAS holds '${isa}'; choose from sse4, avx2, avx512")
+  endif()
+endforeach()
+if(NOT LOCKSTEP_ISAS)
+  message(FATAL_ERROR "LOCKSTEP_ISAS is empty; choose from sse4, avx2, avx512")
+endif()
 set(isa_flags_sse4 -msse4.2)
 set(isa_flags_avx2 -mavx2 -mfma)
 # g++ 12 warns about the undefined operands inside its own AVX-512 intrinsics.

@@ -1,8 +1,11 @@
 #include "core/error.h"
 #include "packets/kernel.h"
 
+#include "compiled_kernels.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <string>
@@ -12,10 +15,6 @@ namespace lockstep {
 #define LOCKSTEP_KERNELS_OF(isa, apply)                                                            \
   apply(kernel_##isa##_1) apply(kernel_##isa##_4) apply(kernel_##isa##_8) apply(kernel_##isa##_16) \
       apply(kernel_##isa##_quad_lit) apply(kernel_##isa##_sky_lit) apply(kernel_##isa##_interior)
-#define LOCKSTEP_KERNELS(apply)    \
-  LOCKSTEP_KERNELS_OF(sse4, apply) \
-  LOCKSTEP_KERNELS_OF(avx2, apply) LOCKSTEP_KERNELS_OF(avx512, apply)
-
 #define LOCKSTEP_DECLARE(kernel) extern const Kernel kernel;
 LOCKSTEP_KERNELS(LOCKSTEP_DECLARE)
 #undef LOCKSTEP_DECLARE
@@ -27,6 +26,11 @@ constexpr const Kernel* kernels[] = {
     LOCKSTEP_KERNELS(LOCKSTEP_ADDRESS)
 #undef LOCKSTEP_ADDRESS
 };
+
+bool is_compiled(Isa isa) {
+  return std::any_of(std::begin(kernels), std::end(kernels),
+                     [&](const Kernel* kernel) { return kernel->isa == isa; });
+}
 
 bool cpu_runs(Isa isa) {
   __builtin_cpu_init();
@@ -53,9 +57,11 @@ std::string available_names() {
 std::vector<Isa> available_isas() {
   std::vector<Isa> result;
   for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
-    if (cpu_runs(isa)) result.push_back(isa);
+    if (is_compiled(isa) && cpu_runs(isa)) result.push_back(isa);
   }
-  if (result.empty()) throw Error("this CPU lacks SSE4.2, which the narrowest kernels need");
+  if (result.empty()) {
+    throw Error("this CPU runs none of the instruction sets that this build has kernels for");
+  }
   return result;
 }
 
@@ -69,9 +75,10 @@ Isa choose_isa(std::string_view text) {
   }
   for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
     if (name(isa) != text) continue;
-    if (cpu_runs(isa)) return isa;
-    throw Error(
-        fmt::format("this CPU does not run {}{}; it runs{}", text, from, available_names()));
+    if (is_compiled(isa) && cpu_runs(isa)) return isa;
+    throw Error(fmt::format("{} {}{}; available are:{}",
+                            is_compiled(isa) ? "this CPU does not run" : "this build lacks", text,
+                            from, available_names()));
   }
   throw UsageError(fmt::format(
       "unknown instruction set '{}'{}; choose from auto, sse4, avx2, avx512", text, from));
