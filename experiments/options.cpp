@@ -42,8 +42,11 @@ void add_scene_options(CLI::App& command, RendererOptions& options) {
       "word, or a JSON file with these keys. The fov is along the shorter\n"
       "side. 'lockstep info SCENE' shows the scene's own");
   add("--environment", options.environment, "SPEC",
-      "In place of the scene's environment: a latitude-longitude image with\n"
-      "y up (.exr, .hdr), a constant radiance R,G,B, or none");
+      "In place of the scene's environment: a latitude-longitude image\n"
+      "(.exr, .hdr), a constant radiance R,G,B, or none");
+  add("--environment-up", options.environment_up, "AXIS",
+      "Where the top of that image lies: x, y, z, -x, -y or -z (default: y)")
+      ->check(one_of({"x", "y", "z", "-x", "-y", "-z"}));
   add("--environment-scale", options.environment_scale, "X",
       "Times the environment's radiance, the scene's own or the one given")
       ->check(number_between(0, 1e9));
@@ -126,7 +129,8 @@ RenderSettings render_settings(const RendererOptions& options) {
 SceneOverrides scene_overrides(const RendererOptions& options) {
   SceneOverrides overrides;
   if (!options.camera.empty()) overrides.camera = parse_camera(options.camera);
-  overrides.environment = parse_environment(options.environment, options.environment_scale);
+  overrides.environment =
+      parse_environment(options.environment, options.environment_scale, options.environment_up);
   overrides.compensate = options.compensate;
   return overrides;
 }

@@ -25,7 +25,7 @@ struct RendererOptions {
   std::string traversal = "auto";
   bool general = false;
   std::string isa = "auto";
-  std::string camera, environment;
+  std::string camera, environment, environment_up;
   std::optional<float> environment_scale;
   bool compensate = false;
 };

@@ -31,6 +31,18 @@ std::optional<glm::vec3> parse_color(const std::string& text) {
   return color;
 }
 
+// Turns y to the axis named, the other axes as little as that allows.
+glm::mat3 turned_up(const std::string& up) {
+  const bool down = up.starts_with('-');
+  const float sign = down ? -1.0f : 1.0f;
+  const std::string_view axis = std::string_view(up).substr(down ? 1 : 0);
+  if (axis == "x") return {{0.0f, -sign, 0.0f}, {sign, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}};
+  if (axis == "y") return {{1.0f, 0.0f, 0.0f}, {0.0f, sign, 0.0f}, {0.0f, 0.0f, sign}};
+  if (axis == "z") return {{1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, sign}, {0.0f, -sign, 0.0f}};
+  throw UsageError(
+      fmt::format("--environment-up: unknown axis '{}'; choose from x, y, z, -x, -y, -z", up));
+}
+
 Environment parse_replacement(const std::string& text) {
   if (const auto color = parse_color(text)) {
     for (const float v : {color->x, color->y, color->z}) {
@@ -59,14 +71,27 @@ void drop_warnings(SceneDescription& scene, std::string_view ending) {
 
 }  // namespace
 
-EnvironmentOverride parse_environment(const std::string& text, std::optional<float> scale) {
+EnvironmentOverride parse_environment(const std::string& text, std::optional<float> scale,
+                                      const std::string& up) {
   EnvironmentOverride change;
   change.scale = scale;
-  if (text.empty()) return change;
+  change.up = up;
+  const auto refuse_up = [&] {
+    if (!up.empty()) throw UsageError("--environment-up: add --environment with an image to turn");
+  };
+  if (text.empty()) {
+    refuse_up();
+    return change;
+  }
   change.kind = text == "none" ? Kind::Remove : Kind::Replace;
   if (change.kind == Kind::Replace) change.environment = parse_replacement(text);
   if (change.kind == Kind::Remove && scale) {
     throw UsageError("--environment-scale: there is nothing to scale with --environment none");
+  }
+  if (change.environment.mapping == Environment::Mapping::Constant) {
+    refuse_up();
+  } else if (!up.empty()) {
+    change.environment.to_world = turned_up(up);
   }
   return change;
 }
@@ -96,6 +121,7 @@ Metadata override_metadata(const SceneOverrides& overrides) {
   };
   add("camera", to_string(overrides.camera));
   add("environment", to_string(overrides.environment));
+  add("environment_up", overrides.environment.up);
   const std::optional<float> scale = overrides.environment.scale;
   add("environment_scale", scale ? fmt::format("{}", *scale) : "");
   add("compensate", overrides.compensate ? "yes" : "");

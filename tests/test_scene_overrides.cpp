@@ -291,6 +291,26 @@ TEST_F(SceneOverridesTest, Environments) {
                        "the scene has no environment");
 }
 
+TEST_F(SceneOverridesTest, TheEnvironmentsTopIsTurned) {
+  const std::string file = write("sky.hdr", "");
+  const std::pair<const char*, glm::vec3> axes[] = {{"x", {1, 0, 0}},   {"y", {0, 1, 0}},
+                                                    {"z", {0, 0, 1}},   {"-x", {-1, 0, 0}},
+                                                    {"-y", {0, -1, 0}}, {"-z", {0, 0, -1}}};
+  for (const auto& [name, top] : axes) {
+    const glm::mat3 m = parse_environment(file, {}, name).environment.to_world;
+    EXPECT_EQ(m * glm::vec3(0, 1, 0), top) << name;
+    EXPECT_EQ(glm::determinant(m), 1.0f) << name;
+  }
+  SceneOverrides overrides;
+  overrides.environment = parse_environment(file, {}, "z");
+  EXPECT_EQ(override_metadata(overrides),
+            (Metadata{{"environment", file}, {"environment_up", "z"}}));
+  for (const char* text : {"", "none", "1,2,3"}) {
+    expect_one_line_with(usage_error_of([&] { parse_environment(text, {}, "z"); }), "an image");
+  }
+  expect_one_line_with(usage_error_of([&] { parse_environment(file, {}, "up"); }), "unknown axis");
+}
+
 TEST_F(SceneOverridesTest, WrongEnvironmentsAreSaidInOneLine) {
   for (const char* text : {"sky.exr", "1,2", "1,2,3,4", "1,2,x", "1", ",,"}) {
     expect_one_line_with(error_of([&] { parse_environment(text, {}); }),
