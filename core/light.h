@@ -5,6 +5,7 @@
 
 #include "core/environment_map_lookup.h"
 #include "core/frame.h"
+#include "core/hash.h"
 #include "core/light_description.h"
 #include "core/scene_data.h"
 #include "core/simd_atan.h"
@@ -49,17 +50,33 @@ LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {
           d.w};
 }
 
-// The light whose interval of the cumulative distribution holds u in [0, 1).
 template <class V>
-LOCKSTEP_INLINE IntOf<V> choose_light(const LightTable& t, V u) {
+struct LightChoice {
+  IntOf<V> index;
+  Vec2<V> u;  // for a point on the light: independent of the choice
+};
+
+// The light whose interval of the cumulative distribution holds u.x; what is left of u.x within the
+// interval goes on as a number in [0, 1), so that one point stratifies both the choice and the
+// place on the light. u.x has 24 digits: those that the interval has used up come from the last 12
+// of u.y, which u.y keeps.
+template <class V>
+LOCKSTEP_INLINE LightChoice<V> choose_light(const LightTable& t, Vec2<V> u) {
   using I = IntOf<V>;
   I first(0);
+  V below(0.0f);
   for (int step = int(std::bit_floor(unsigned(t.count))); step > 0; step /= 2) {
     const I next = first + I(step);
     const I probe = select(next < I(t.count), next, I(t.count));
-    first = select((gather(t.cdf, probe) <= u) & (next < I(t.count)), next, first);
+    const V start = gather(t.cdf, probe);
+    const MaskOf<V> beyond = (start <= u.x) & (next < I(t.count));
+    first = select(beyond, next, first);
+    below = select(beyond, start, below);
   }
-  return first;
+  const V digits = u.y * V(0x1p12f);
+  const V rest = fma(digits - floor(digits), V(0x1p-24f), u.x - below);
+  const V x = rest / (gather(t.cdf, first + I(1)) - below);
+  return {first, {min(x, V(one_minus_epsilon)), u.y}};
 }
 
 // Density of a point on a flat light seen at `distance` under `cos_light`.

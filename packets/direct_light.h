@@ -73,14 +73,11 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
   if (all_delta(bsdf)) return;
   const SceneData& scene = *c.scene;
   const ShadeQueue& queue = c.wave->hits_to_shade;
-  const auto value = [&](const FloatArray* a, Purpose p)
-                         LOCKSTEP_LAMBDA { return load<V>(a[int(p)] + i); };
-  const I light = needs<F>(scene, Feature::LightChoice)
-                      ? choose_light(scene.lights, value(queue.u, Purpose::Choice))
-                      : I(0);
-  const LightSample<V> s = sample_light_at<V, F, transmits<Bsdf>>(
-      scene, light, surface,
-      Vec2<V>(value(queue.u, Purpose::Light), value(queue.v, Purpose::Light)));
+  LightChoice<V> light{
+      I(0), {load<V>(queue.u[int(Purpose::Light)] + i), load<V>(queue.v[int(Purpose::Light)] + i)}};
+  if (needs<F>(scene, Feature::LightChoice)) light = choose_light(scene.lights, light.u);
+  const LightSample<V> s =
+      sample_light_at<V, F, transmits<Bsdf>>(scene, light.index, surface, light.u);
   const Vec3<V> wi = surface.frame.to_local(s.wi);
   MaskOf<V> lit = active & (s.pdf > V(0.0f)) & is_possible<Bsdf>(surface, wi, s.wi);
   if (none(lit)) return;

@@ -55,7 +55,7 @@ void draw_samples(const ShadeContext& c) {
                  queue.v[int(purpose)]);
   };
   if (c.scene->lights.count > 0) draw(Purpose::Light);
-  if (needs<F>(*c.scene, Feature::LightChoice) || has_lobes(K)) draw(Purpose::Choice);
+  if (has_lobes(K)) draw(Purpose::Choice);
   if (continues<K, F>(c)) draw(Purpose::Bsdf);
   if (continues<K, F>(c) && plays_roulette<F>(c)) draw(Purpose::Roulette);
 }

@@ -6,8 +6,8 @@ namespace lockstep {
 
 inline constexpr int pixel_pair = 0;  // position in the pixel filter
 
-// The pairs of a surface interaction.
-enum class Purpose { Light, Bsdf, Choice, Roulette };  // Choice: which light, which lobe
+// The pairs of a surface interaction. Light: which light, and where on it; Choice: which lobe.
+enum class Purpose { Light, Bsdf, Choice, Roulette };
 
 // `bounce` counts interactions from 0.
 constexpr int sample_pair(int bounce, Purpose purpose) { return 1 + 4 * bounce + int(purpose); }

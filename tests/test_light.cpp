@@ -462,19 +462,49 @@ TEST(ChooseLight, FindsTheIntervalThatHoldsU) {
     values.resize((values.size() + 15) / 16 * 16, 0.5f);
     std::vector<int> chosen;
     for (const float u : values) {
-      const int i = choose_light(table, u);
+      const LightChoice<float> found = choose_light(table, Vec2<float>(u, one_minus_epsilon));
+      const int i = found.index;
       chosen.push_back(i);
       ASSERT_TRUE(i >= 0 && i < n) << i << " of " << n;
+      EXPECT_TRUE(found.u.x >= 0.0f && found.u.x < 1.0f) << "u " << u << " left " << found.u.x;
       EXPECT_TRUE(cdf[size_t(i)] <= u && u < cdf[size_t(i + 1)]) << "u " << u << " chose " << i;
       EXPECT_GT(probabilities[size_t(i)], 0.0) << "u " << u << " chose " << i;
     }
     for_each_width([&](auto width) {
       constexpr int W = width();
       for (std::size_t i = 0; i < values.size(); i += W) {
-        const Int<W> wide = choose_light(table, load<Float<W>>(&values[i]));
-        for (int k = 0; k < W; ++k) EXPECT_EQ(wide[k], chosen[i + size_t(k)]);
+        const auto wide =
+            choose_light(table, Vec2<Float<W>>(load<Float<W>>(&values[i]), Float<W>(0.3f)));
+        for (int k = 0; k < W; ++k) {
+          const auto one = choose_light(table, Vec2<float>(values[i + size_t(k)], 0.3f));
+          EXPECT_EQ(wide.index[k], chosen[i + size_t(k)]);
+          EXPECT_EQ(wide.u.x[k], one.u.x);
+        }
       }
     });
+  }
+}
+
+// What is left of u on lights of many probabilities, down to the single step of 2^-24 that a sample
+// resolves: there u.x is always the same.
+TEST(ChooseLight, WhatIsLeftOfUIsUniform) {
+  constexpr float step = 0x1p-24f;
+  const std::vector<float> steps = {1.0f, 2.0f, 3.0f, 17.0f, 1000.0f, 0x1p20f, 5e6f};
+  std::vector<float> cdf{0.0f};
+  for (const float n : steps) cdf.push_back(cdf.back() + n * step);
+  cdf.push_back(1.0f);
+  const LightTable table{int(steps.size()) + 1, nullptr, cdf.data()};
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    CellCounts counts(16, 16);
+    for (std::uint32_t k = 0; k < sample_count; ++k) {
+      const glm::vec3 r = uniform3(k, 90 + std::uint32_t(i));
+      const float u = cdf[i] + std::min(std::floor(r.x * steps[i]), steps[i] - 1.0f) * step;
+      const LightChoice<float> c = choose_light(table, Vec2<float>(u, r.y));
+      ASSERT_EQ(c.index, int(i));
+      counts.add(glm::dvec2(c.u));
+    }
+    const DensityTest test = counts.test([](glm::dvec2) { return 1.0; });
+    EXPECT_GT(test.chi_square.p_value, sidak_significance(int(steps.size()))) << steps[i];
   }
 }
 
