@@ -16,6 +16,7 @@ std::vector<std::string> feature_names(FeatureMask set) {
                                                 "mix",
                                                 "quad-lights",
                                                 "triangle-lights",
+                                                "disk-lights",
                                                 "sphere-lights",
                                                 "environment",
                                                 "environment-map",

@@ -23,6 +23,7 @@ enum class Feature : unsigned {
   Mix,
   QuadLights,
   TriangleLights,
+  DiskLights,
   SphereLights,
   Environment,  // constant
   EnvironmentMap,
@@ -41,7 +42,7 @@ enum class Feature : unsigned {
   Lens,
   Orthographic,
 };
-inline constexpr unsigned feature_count = 30;
+inline constexpr unsigned feature_count = 31;
 
 using FeatureMask = std::uint32_t;
 inline constexpr FeatureMask all_features = (1u << feature_count) - 1u;

@@ -17,6 +17,7 @@ struct Light {
   float area = 0.0f;  // radius of a sphere
   float side = 1.0f;
   float power = 0.0f;
+  float outline = 0.0f;  // column 19 of LightTable::rows
 };
 
 using Corners = std::array<glm::vec3, 3>;
@@ -39,6 +40,13 @@ Light flat_light(LightKind kind, glm::vec3 corner, glm::vec3 e1, glm::vec3 e2,
   return l;
 }
 
+Light parallelogram_light(glm::vec3 corner, glm::vec3 e1, glm::vec3 e2, const Emission& emission) {
+  Light l = flat_light(LightKind::Parallelogram, corner, e1, e2, emission);
+  const float lengths = glm::length(e1) * glm::length(e2);
+  l.outline = std::abs(glm::dot(e1, e2)) <= 1e-4f * lengths ? 1.0f : 0.0f;
+  return l;
+}
+
 // The parallelogram that two triangles sharing their diagonal make: p0, p0 + e1, p0 + e1 + e2,
 // p0 + e2, if they make one. `a` is (p0, p1, p2) and `b` (p0, p2, p3) up to rotation of each.
 std::optional<Light> as_parallelogram(const Corners& a, const Corners& b,
@@ -51,16 +59,48 @@ std::optional<Light> as_parallelogram(const Corners& a, const Corners& b,
       const glm::vec3 gap = (p1 - p0) + (q3 - p0) - (p2 - p0);
       const float size = glm::length(p2 - p0);
       if (glm::length(gap) <= 1e-5f * size) {
-        return flat_light(LightKind::Parallelogram, p0, p1 - p0, q3 - p0, emission);
+        return parallelogram_light(p0, p1 - p0, q3 - p0, emission);
       }
     }
   }
   return std::nullopt;
 }
 
+// The disk that a mesh stands for, as expand_shapes makes them and affine maps leave them: a fan of
+// triangles around a centre, to a regular polygon's corners.
+std::optional<Light> as_disk(const TriangleMesh& mesh, const Emission& emission) {
+  const std::size_t n = mesh.triangles.size();
+  if (n < 3) return std::nullopt;
+  const std::vector<glm::vec3>& p = mesh.positions;
+  const glm::vec3 centre = p[mesh.triangles[0].x];
+  const auto corner = [&](std::size_t i) { return p[mesh.triangles[i % n].y]; };
+  const auto angle = [&](std::size_t i) { return 2.0f * glm::pi<float>() * float(i) / float(n); };
+  glm::vec3 x(0.0f), y(0.0f);
+  for (std::size_t i = 0; i < n; ++i) {
+    x += 2.0f / float(n) * std::cos(angle(i)) * (corner(i) - centre);
+    y += 2.0f / float(n) * std::sin(angle(i)) * (corner(i) - centre);
+  }
+  const float tolerance = 1e-5f * (glm::length(x) + glm::length(y));
+  for (std::size_t i = 0; i < n; ++i) {
+    if (p[mesh.triangles[i].x] != centre || p[mesh.triangles[i].z] != corner(i + 1)) return {};
+    const glm::vec3 expected = centre + std::cos(angle(i)) * x + std::sin(angle(i)) * y;
+    if (!(glm::distance(corner(i), expected) <= tolerance)) return std::nullopt;
+  }
+  Light l = flat_light(LightKind::Disk, centre, x, y, emission);
+  const float share = 0.5f * float(n) * std::sin(angle(1));  // of the parallelogram of x and y
+  l.area *= share;
+  l.power *= share;
+  l.outline = float(n);
+  return l;
+}
+
 // Lights of a mesh; `of_primitive` gets each triangle's light, counted from `first`.
 std::vector<Light> mesh_lights(const TriangleMesh& mesh, const Emission& emission, int first,
                                std::vector<std::int32_t>& of_primitive) {
+  if (auto disk = as_disk(mesh, emission)) {
+    of_primitive.insert(of_primitive.end(), mesh.triangles.size(), first);
+    return {*disk};
+  }
   std::vector<Light> lights;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const auto index = first + std::int32_t(lights.size());
@@ -181,7 +221,7 @@ void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
     append(l.edge1, float(cdf[i + 1] - cdf[i]));
     append(l.edge2, l.side);
     append(l.normal, float(int(l.kind)));
-    append(l.radiance, 0.0f);
+    append(l.radiance, l.outline);
   }
   flat.light_cdf.push_back(1.0f);
 }

@@ -9,6 +9,7 @@
 #include "core/light_description.h"
 #include "core/scene_data.h"
 #include "core/simd_atan.h"
+#include "core/spherical_rectangle.h"
 #include "core/warp.h"
 
 namespace lockstep {
@@ -27,7 +28,7 @@ struct LightSample {
 template <class V>
 struct LightRow {
   Vec3<V> corner, edge1, edge2, normal, radiance;
-  V area, probability, side;
+  V area, probability, side, outline;
   V kind;  // a LightKind as a number
 
   LOCKSTEP_INLINE MaskOf<V> is(LightKind k) const { return kind == V(float(int(k))); }
@@ -47,6 +48,7 @@ LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {
           a.w,
           b.w,
           c.w,
+          e.w,
           d.w};
 }
 
@@ -99,17 +101,38 @@ LOCKSTEP_INLINE V sphere_cone(V distance2, V radius) {
   return select(sin2 < V(1.0f), sin2 / (V(1.0f) + cos_max), V(-1.0f));
 }
 
+// A light that is a rectangle as p sees it; of solid angle 0 where it is sampled by area.
 template <class V>
-LOCKSTEP_INLINE LightSample<V> sample_flat_light(const LightRow<V>& light, MaskOf<V> triangle,
+LOCKSTEP_INLINE SphericalRectangle<V> seen_rectangle(const LightRow<V>& light, const Vec3<V>& p) {
+  const MaskOf<V> rectangle = light.is(LightKind::Parallelogram) & (light.outline > V(0.0f));
+  SphericalRectangle<V> s =
+      spherical_rectangle(light.corner - p, light.edge1, light.edge2, light.normal);
+  s.solid_angle = select(rectangle & (s.solid_angle >= V(min_solid_angle)), s.solid_angle, V(0.0f));
+  return s;
+}
+
+// The masks say which lanes have a light of that kind. Rectangles by solid angle, others by area.
+template <class V>
+LOCKSTEP_INLINE LightSample<V> sample_flat_light(const LightRow<V>& light, MaskOf<V> quad,
+                                                 MaskOf<V> triangle, MaskOf<V> disk,
                                                  const Vec3<V>& p, Vec2<V> u) {
-  const Vec2<V> b = uniform_triangle(u);
-  const V s = select(triangle, b.x, u.x), t = select(triangle, b.y, u.y);
-  const Vec3<V> to = light.corner + fma(s, light.edge1, light.edge2 * t) - p;
+  Vec2<V> st = u;
+  V solid_angle(0.0f);
+  if (any(quad)) {
+    const SphericalRectangle<V> seen = seen_rectangle(light, p);
+    solid_angle = seen.solid_angle;
+    st = select<V>(solid_angle > V(0.0f), sample_spherical_rectangle(seen, u), st);
+  }
+  if (any(triangle)) st = select<V>(triangle, uniform_triangle(u), st);
+  if (any(disk)) st = select<V>(disk, uniform_polygon(u, light.outline), st);
+  const Vec3<V> to = light.corner + fma(st.x, light.edge1, light.edge2 * st.y) - p;
   const V distance2 = dot(to, to);
   const V distance = sqrt(distance2);
   const Vec3<V> wi = to * (V(1.0f) / distance);
   const V cos_light = -dot(light.normal, wi);
-  const V pdf = light.probability * solid_angle_pdf(distance, abs(cos_light), light.area);
+  const V density = select(solid_angle > V(0.0f), V(1.0f) / solid_angle,
+                           solid_angle_pdf(distance, abs(cos_light), light.area));
+  const V pdf = light.probability * density;
   const MaskOf<V> lit = emits(light.side, cos_light) & (distance2 > V(0.0f)) & is_finite(pdf);
   return {wi, distance, light.radiance, select(lit, pdf, V(0.0f))};
 }
@@ -229,10 +252,12 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
     return needs<F>(scene, feature) ? light.is(kind) : MaskOf<V>(false);
   };
   const MaskOf<V> triangle = of_kind(Feature::TriangleLights, LightKind::Triangle);
-  const MaskOf<V> flat = triangle | of_kind(Feature::QuadLights, LightKind::Parallelogram);
+  const MaskOf<V> quad = of_kind(Feature::QuadLights, LightKind::Parallelogram);
+  const MaskOf<V> disk = of_kind(Feature::DiskLights, LightKind::Disk);
+  const MaskOf<V> flat = quad | triangle | disk;
   const MaskOf<V> sphere = of_kind(Feature::SphereLights, LightKind::Sphere);
   const MaskOf<V> environment = of_kind(Feature::Environment, LightKind::Environment);
-  if (any(flat)) merge(flat, sample_flat_light(light, triangle, p, u));
+  if (any(flat)) merge(flat, sample_flat_light(light, quad, triangle, disk, p, u));
   if (any(sphere)) merge(sphere, sample_sphere_light(light, p, u));
   if (any(environment)) merge(environment, sample_environment<both_sides>(light, frame, u));
   if (needs<F>(scene, Feature::EnvironmentMap)) {
@@ -268,6 +293,10 @@ LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, con
   }
   V cos_light = -dot(light.normal, wi);
   V pdf = solid_angle_pdf(distance, max(abs(cos_light), V(1e-20f)), light.area);
+  if (needs<F>(scene, Feature::QuadLights)) {
+    const V solid_angle = seen_rectangle(light, p).solid_angle;
+    pdf = select(solid_angle > V(0.0f), V(1.0f) / solid_angle, pdf);
+  }
   if (needs<F>(scene, Feature::SphereLights) && any(sphere)) {
     const Vec3<V> to_centre = light.corner - p;
     const V one_minus_cos = sphere_cone(dot(to_centre, to_centre), light.area);

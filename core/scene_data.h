@@ -71,7 +71,9 @@ struct MaterialTable {
 //   4 edge 1, 7 probability of choosing this light
 //   8 edge 2, 11 side: +1 emits along the normal (outwards), -1 against it, 0 on both sides
 //   12 unit normal, 15 LightKind as a number
-//   16 radiance
+//   16 radiance, 19 of a parallelogram: 1 if it is a rectangle; of a disk: its corners
+// A disk is the regular polygon that stands for it, or that polygon stretched: 0 its centre, 4 and
+// 8 the half axes, the first to a corner.
 // Point and spot lights: 0 position, 16 intensity; spot lights: 4 cosines of the inner and outer
 // cone and SpotLight::Falloff as a number, 8 those cones' angles, 12 axis. Distant lights:
 // 12 direction in which light travels, 16 irradiance. Environment maps have no more than their
@@ -81,6 +83,7 @@ struct MaterialTable {
 enum class LightKind : std::int32_t {
   Parallelogram,
   Triangle,
+  Disk,
   Sphere,
   Environment,
   EnvironmentMap,
@@ -172,8 +175,9 @@ constexpr bool needs(const SceneData& scene, Feature feature) {
   return (F & bit(feature)) != 0u && (scene.features & bit(feature)) != 0u;
 }
 
-inline constexpr FeatureMask area_light_features = feature_set(
-    Feature::QuadLights, Feature::TriangleLights, Feature::SphereLights, Feature::TexturedLights);
+inline constexpr FeatureMask area_light_features =
+    feature_set(Feature::QuadLights, Feature::TriangleLights, Feature::DiskLights,
+                Feature::SphereLights, Feature::TexturedLights);
 inline constexpr FeatureMask material_features =
     feature_set(Feature::Diffuse, Feature::Conductor, Feature::Coated, Feature::RoughDiffuse,
                 Feature::DiffuseTransmission, Feature::Dielectric, Feature::Principled);

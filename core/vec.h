@@ -58,6 +58,10 @@ LOCKSTEP_INLINE Vec3<V> fma(V s, const Vec3<V>& b, const Vec3<V>& a) {
 }
 
 template <class V>
+LOCKSTEP_INLINE Vec2<V> select(MaskOf<V> m, const Vec2<V>& a, const Vec2<V>& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y)};
+}
+template <class V>
 LOCKSTEP_INLINE Vec3<V> select(MaskOf<V> m, const Vec3<V>& a, const Vec3<V>& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }

@@ -58,6 +58,27 @@ LOCKSTEP_INLINE V uniform_cone_pdf(V one_minus_cos) {
   return V(0.5f * inv_pi) / one_minus_cos;
 }
 
+// Uniform on the regular polygon of that many corners on the unit circle, the first on the x axis:
+// the concentric map of the disk, whose sectors become the polygon's triangles.
+template <class V>
+LOCKSTEP_INLINE Vec2<V> uniform_polygon(Vec2<V> u, V corners) {
+  const V a = fma(u.x, V(2.0f), V(-1.0f));
+  const V b = fma(u.y, V(2.0f), V(-1.0f));
+  const MaskOf<V> a_leads = abs(a) > abs(b);
+  const V radius = select(a_leads, a, b);
+  const V eighth = V(0.125f) * select(a_leads, b, a) / select(radius == V(0.0f), V(1.0f), radius);
+  const V turned = select(a_leads, eighth, V(0.25f) - eighth);
+  const V turns = turned + select(radius < V(0.0f), V(0.5f), V(0.0f));
+  const V sector = turns * corners, first = floor(sector), share = sector - first;
+  const auto corner = [&](V i) LOCKSTEP_LAMBDA {
+    const V t = i / corners;
+    return sincos_turns(t - floor(t));
+  };
+  const SinCos<V> c0 = corner(first), c1 = corner(first + V(1.0f));
+  const V r = abs(radius);
+  return {r * fma(share, c1.cos - c0.cos, c0.cos), r * fma(share, c1.sin - c0.sin, c0.sin)};
+}
+
 // Barycentric coordinates, uniform on a triangle (Heitz 2019, "A Low-Distortion Map Between
 // Triangle and Square"): the square's halves fold onto each other instead of meeting in a point.
 template <class V>

@@ -27,11 +27,16 @@ struct LightCase {
   float radius = 0.0f;  // of a sphere
   float side = 0.0f;
   glm::vec3 point{0.0f};  // that is lit
+  float outline = 0.0f;   // as LightTable has it
 
   bool is_sphere() const { return kind == LightKind::Sphere; }
   glm::dvec3 cross_edges() const { return glm::cross(glm::dvec3(edge1), glm::dvec3(edge2)); }
   double area() const {
-    return glm::length(cross_edges()) * (kind == LightKind::Triangle ? 0.5 : 1.0);
+    const double corners = double(outline);
+    const double share = kind == LightKind::Triangle ? 0.5
+                         : kind == LightKind::Disk ? 0.5 * corners * std::sin(2.0 * pi_d / corners)
+                                                   : 1.0;
+    return share * glm::length(cross_edges());
   }
 };
 
@@ -44,6 +49,25 @@ LightCase parallelogram(const char* name, glm::vec3 point, float side = 1.0f) {
           0.0f,
           side,
           point};
+}
+// At right angles, its middle at `middle` and its normal +z.
+LightCase rectangle(const char* name, glm::vec3 middle, float width, float height,
+                    glm::vec3 point = glm::vec3(0.0f)) {
+  const glm::vec3 x = width * normalize(glm::vec3(1.0f, -0.4f, 0.0f));
+  const glm::vec3 y = height * normalize(glm::vec3(0.4f, 1.0f, 0.0f));
+  return {name, LightKind::Parallelogram, middle - 0.5f * x - 0.5f * y, x, y, 0.0f, 0.0f, point,
+          1.0f};
+}
+LightCase disk(const char* name, glm::vec3 point, float corners = 128.0f) {
+  return {name,
+          LightKind::Disk,
+          {0.2f, -0.1f, 1.0f},
+          {1.5f, 0.3f, 0.0f},
+          {-0.3f, 1.2f, 0.2f},
+          0.0f,
+          0.0f,
+          point,
+          corners};
 }
 LightCase triangle(const char* name, glm::vec3 point, float side = 1.0f) {
   return {name,
@@ -72,6 +96,19 @@ std::vector<LightCase> cases() {
       parallelogram("parallelogram, far", {5.0f, 20.0f, -30.0f}),
       parallelogram("parallelogram, grazing", {4.0f, 3.0f, 1.7f}),
       parallelogram("parallelogram, from behind", {0.1f, 0.4f, 3.0f}, 0.0f),
+      rectangle("rectangle", {0.2f, 0.3f, -1.0f}, 1.0f, 2.0f),
+      rectangle("rectangle, near", {0.1f, 0.2f, 0.1f}, 1.0f, 1.0f),
+      rectangle("rectangle, far", {2.0f, 3.0f, -2.5f}, 1.0f, 1.0f),
+      rectangle("rectangle, too far for its solid angle", {0.1f, 0.2f, 0.3f}, 1.0f, 1.0f,
+                {50.0f, 80.0f, 30.0f}),
+      rectangle("rectangle, grazing", {1.0f, 0.6f, 0.05f}, 1.0f, 1.0f),
+      rectangle("rectangle, of great length", {0.0f, 0.0f, 1.0f}, 100.0f, 0.1f),
+      rectangle("rectangle, over its corner", {0.5f, 0.5f, 0.3f}, 1.0f, 1.0f),
+      disk("disk", {0.2f, 0.3f, -1.0f}),
+      disk("disk, near", {0.5f, 0.0f, 0.9f}),
+      disk("disk, far", {5.0f, 20.0f, -30.0f}),
+      disk("disk, grazing", {4.0f, 3.0f, 0.7f}),
+      disk("disk of few corners", {0.2f, 0.3f, -1.0f}, 5.0f),
       triangle("triangle", {0.2f, 0.3f, -1.0f}),
       triangle("triangle, near", {-0.3f, 0.0f, 1.9f}),
       triangle("triangle, from behind", {0.1f, 0.4f, 3.0f}, -1.0f),
@@ -107,7 +144,7 @@ struct LightScene {
     add(c.edge1, choice);
     add(c.edge2, c.side);
     add(normal, float(int(c.kind)));
-    add(glm::vec3(3.0f, 2.0f, 1.0f), 0.0f);
+    add(glm::vec3(3.0f, 2.0f, 1.0f), c.outline);
   }
 };
 
@@ -152,6 +189,10 @@ class LightMap {
     glm::dvec2 b = p;
     if (light_.kind == LightKind::Triangle) {
       b = std::sqrt(p.x) * glm::dvec2(p.y, 1.0 - p.y);
+    } else if (light_.kind == LightKind::Disk) {
+      const double sector = std::floor(p.y * corners());
+      const glm::dvec2 c0 = corner(sector), c1 = corner(sector + 1.0);
+      b = std::sqrt(p.x) * (c0 + (p.y * corners() - sector) * (c1 - c0));
     }
     const glm::dvec3 to =
         to_corner_ + b.x * glm::dvec3(light_.edge1) + b.y * glm::dvec3(light_.edge2);
@@ -172,6 +213,14 @@ class LightMap {
     const double s = glm::dot(wi, glm::cross(e2, to_corner_)) / determinant;
     const double t = glm::dot(wi, glm::cross(to_corner_, e1)) / determinant;
     if (light_.kind == LightKind::Parallelogram) return {s, t};
+    if (light_.kind == LightKind::Disk) {
+      const double turns = std::atan2(t, s) / (2.0 * pi_d);
+      const double sector = std::floor((turns < 0.0 ? turns + 1.0 : turns) * corners());
+      const glm::dvec2 c0 = corner(sector), along = corner(sector + 1.0) - c0;
+      const double r = (s * along.y - t * along.x) / (c0.x * along.y - c0.y * along.x);
+      const double share = glm::dot(glm::dvec2(s, t) / r - c0, along) / glm::dot(along, along);
+      return {r * r, (sector + share) / corners()};
+    }
     return {(s + t) * (s + t), s / (s + t)};
   }
 
@@ -182,6 +231,12 @@ class LightMap {
   }
 
  private:
+  double corners() const { return double(light_.outline); }
+  glm::dvec2 corner(double i) const {
+    const double angle = 2.0 * pi_d * i / corners();
+    return {std::cos(angle), std::sin(angle)};
+  }
+
   LightCase light_;
   glm::dvec3 to_corner_;
   DirectionMap sphere_;
@@ -264,9 +319,87 @@ double solid_angle(const LightCase& c) {
     const double sin2 = r * r / (d * d);
     return 2.0 * pi_d * sin2 / (1.0 + std::sqrt(1.0 - sin2));
   }
+  if (c.kind == LightKind::Disk) {
+    double sum = 0.0;
+    const double angle = 2.0 * pi_d / double(c.outline);
+    for (double a = 0.5; a < double(c.outline); a += 1.0) {
+      const auto at = [&](double i) { return std::cos(i * angle) * e1 + std::sin(i * angle) * e2; };
+      sum += triangle_solid_angle(o, o + at(a - 0.5), o + at(a + 0.5));
+    }
+    return sum;
+  }
   const double half = triangle_solid_angle(o, o + e1, o + e2);
   if (c.kind == LightKind::Triangle) return half;
   return half + triangle_solid_angle(o + e1, o + e1 + e2, o + e2);
+}
+
+// A rectangle in its own frame, in units of its height above the point that is lit.
+struct Rectangle {
+  double x0, x1, y0, y1;
+
+  // Solid angle of the part up to x; of the whole by default.
+  double solid_angle(double x) const {
+    const auto corner = [](double a, double b) {
+      return std::atan2(a * b, std::sqrt(1.0 + a * a + b * b));
+    };
+    return corner(x, y1) - corner(x0, y1) - corner(x, y0) + corner(x0, y0);
+  }
+  // Share of the line at x that lies below y.
+  double share_of_line(double x, double y) const {
+    const auto sine = [&](double b) { return b / std::sqrt(1.0 + x * x + b * b); };
+    return (sine(y) - sine(y0)) / (sine(y1) - sine(y0));
+  }
+};
+
+// The maps from u to the solid angle below x, and on the line at x to that below y, are the
+// identity: from near (a thousandth of the rectangle's size) to far, over its middle, its edges and
+// its corners, beside it and of great length.
+TEST(SphericalRectangle, SharesOfTheSolidAngleAreThoseOfU) {
+  constexpr float size = 3.0f;
+  for (const float height : {0.001f, 0.01f, 0.1f, 1.0f, 10.0f, 10000.0f}) {
+    for (const glm::vec2 corner :
+         {glm::vec2(-0.5f), glm::vec2(0.0f), glm::vec2(-1.0f, -0.4f), glm::vec2(-0.99f),
+          glm::vec2(0.5f, -0.1f), glm::vec2(0.3f, -2.0f)}) {
+      for (const float length : {1.0f, 30.0f}) {
+        const float width = size * length, z = size * height;
+        const glm::vec3 to_corner(corner.x * width, corner.y * size, z);
+        const auto seen = spherical_rectangle<float>(to_corner, {width, 0.0f, 0.0f},
+                                                     {0.0f, size, 0.0f}, {0.0f, 0.0f, -1.0f});
+        const double h = double(seen.z);
+        const Rectangle r{double(seen.x0) / h, (double(seen.x0) + double(seen.width)) / h,
+                          double(seen.y0) / h, (double(seen.y0) + double(seen.height)) / h};
+        const std::string what = "height " + std::to_string(height) + ", corner " +
+                                 std::to_string(corner.x) + " " + std::to_string(corner.y) +
+                                 ", length " + std::to_string(length);
+        const double whole = r.solid_angle(r.x1);
+        if (height < 100.0f) {
+          EXPECT_NEAR(double(seen.solid_angle) / whole, 1.0, 2e-4) << what;
+        }
+        if (!(seen.solid_angle >= min_solid_angle)) continue;
+        for (std::uint32_t i = 0; i < 500; ++i) {
+          const Vec2<float> u = uniform2(i, 80);
+          const glm::dvec2 st(sample_spherical_rectangle(seen, u));
+          ASSERT_TRUE(st.x >= 0.0 && st.x <= 1.0 && st.y >= 0.0 && st.y <= 1.0) << what;
+          const double x = r.x0 + st.x * (r.x1 - r.x0), y = r.y0 + st.y * (r.y1 - r.y0);
+          ASSERT_NEAR(r.solid_angle(x) / whole, double(u.x), 2e-3) << what;
+          ASSERT_NEAR(r.share_of_line(x, y), double(u.y), 2e-3) << what;
+        }
+      }
+    }
+  }
+}
+
+// Next to a large rectangle half of all directions meet it, and hardly one weighs more than
+// another.
+TEST(Light, RectanglesNearbyHaveTheDensityOfTheirSolidAngle) {
+  for (const float distance : {0.3f, 1e-2f, 1e-3f}) {
+    const LightCase c = rectangle("near", {0.1f, -0.2f, distance}, 1.0f, 1.0f);
+    const LightScene scene({c});
+    for (std::uint32_t i = 0; i < 200; ++i) {
+      const LightSample<float> s = sample_case(scene, c, uniform2(i, 81));
+      EXPECT_NEAR(double(choice / s.pdf) / solid_angle(c), 1.0, 1e-3) << distance;
+    }
+  }
 }
 
 struct Mean {

@@ -246,6 +246,20 @@ TEST(DirectLight, OfTriangles) {
   expect_mean(channel_means(scene, {.spp = 32}), expected, 1e-3);
 }
 
+TEST(DirectLight, OfADisk) {
+  for (const auto& [radius, h] : {std::array{0.5f, 1.0f}, std::array{2.0f, 1.5f}}) {
+    SceneDescription d = lit_floor();
+    d.shapes.push_back({Disk{{0, h, 0}, {0, -1, 0}, radius}, lamp(d), Emission{glm::vec3(5.0f)}});
+    const Scene scene = build(std::move(d));
+    ASSERT_EQ(scene.data().lights.count, 1);
+    const double r2 = double(radius) * double(radius), h2 = double(h) * double(h);
+    for (const int depth : {1, 2}) {  // 1e-3: it is a polygon of the same area
+      expect_mean(channel_means(scene, {.depth = depth}), 5.0 * double(albedo) * r2 / (r2 + h2),
+                  1e-3);
+    }
+  }
+}
+
 TEST(DirectLight, OfASphere) {
   // E = pi L (R / D)^2 cos(theta) while the whole sphere is above the horizon.
   for (const auto& [x, y, radius] :
@@ -348,6 +362,40 @@ TEST(Lights, AreChosenWithTheProbabilityTheyState) {
     EXPECT_EQ(probability, lights.cdf[i + 1] - lights.cdf[i]);
     EXPECT_GE(probability, 0x1p-24f) << "a light that shines must be found";
     EXPECT_EQ(lights.cdf[i] * 0x1p24f, std::floor(lights.cdf[i] * 0x1p24f));
+  }
+}
+
+// An ellipse of 20 triangles; `moved` is the way that one corner is put out of place.
+TriangleMesh ellipse(float moved) {
+  TriangleMesh fan;
+  fan.positions.emplace_back(0.1f, 1.0f, 0.2f);
+  for (unsigned i = 0; i < 20; ++i) {
+    const float a = float(i) * 0.1f * pi;
+    fan.positions.push_back(fan.positions[0] + std::cos(a) * glm::vec3(1.0f, 0.2f, 0.0f) -
+                            std::sin(a) * glm::vec3(0.3f, 0.1f, 2.0f));
+    fan.triangles.emplace_back(0u, 1u + i, 1u + (i + 1u) % 20u);
+  }
+  fan.positions[5].y += moved;
+  return fan;
+}
+
+TEST(Lights, AFanThatIsADiskIsOneLight) {
+  for (const bool disk : {true, false}) {
+    SceneDescription d = lit_floor();
+    const TriangleMesh fan = ellipse(disk ? 0.0f : 0.01f);
+    builtin::add_mesh(d, fan, lamp(d));
+    d.shapes.back().emission = Emission{glm::vec3(5.0f)};
+    const Scene scene = build(std::move(d));
+    const LightTable& lights = scene.data().lights;
+    ASSERT_EQ(lights.count, disk ? 1 : 20);
+    if (!disk) continue;
+    float area = 0.0f;
+    for (const glm::uvec3 t : fan.triangles) {
+      const glm::vec3 p = fan.positions[t.x];
+      area += 0.5f * glm::length(glm::cross(fan.positions[t.y] - p, fan.positions[t.z] - p));
+    }
+    EXPECT_NEAR(lights.rows[3], area, 1e-5f * area);
+    EXPECT_EQ(lights.rows[15], float(int(LightKind::Disk)));
   }
 }
 

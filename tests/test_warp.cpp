@@ -13,7 +13,7 @@
 namespace lockstep {
 namespace {
 
-constexpr int chi_square_tests = 9;  // in this file
+constexpr int chi_square_tests = 12;  // in this file
 constexpr std::uint32_t sample_count = 1 << 18;
 constexpr float cones[] = {2.0f, 1.0f, 0.1f, 1e-3f, 1e-7f};  // 1 - cos of the half angle
 constexpr float last = one_minus_epsilon;
@@ -38,6 +38,38 @@ TEST(Warp, ConcentricDiskIsUniform) {
     counts.add({glm::dot(d, d), turn(d.x, d.y)});
   }
   expect_density("disk", counts, [](glm::dvec2) { return 1.0; });
+}
+
+TEST(Warp, UniformPolygonIsUniformInEachOfItsTriangles) {
+  for (const int corners : {3, 8, 128}) {
+    const double sector = 2.0 * double(pi) / corners;
+    CellCounts counts(32, 128);
+    for (std::uint32_t i = 0; i < sample_count; ++i) {
+      const glm::dvec2 d(uniform_polygon(uniform2(i, 9), float(corners)));
+      const double place = turn(d.x, d.y) * corners, first = std::floor(place);
+      // Along and across the triangle: distance from the centre over that of the edge, squared.
+      const double middle = (first + 0.5) * sector;
+      const double across = d.x * std::cos(middle) + d.y * std::sin(middle);
+      const double along = d.y * std::cos(middle) - d.x * std::sin(middle);
+      const double r = across / std::cos(0.5 * sector);
+      const double share = 0.5 + 0.5 * along / (r * std::sin(0.5 * sector));
+      counts.add({r * r, (first + share) / corners});
+    }
+    expect_density("polygon", counts, [](glm::dvec2) { return 1.0; });
+  }
+}
+
+TEST(Warp, UniformPolygonIsContinuous) {
+  constexpr int n = 256;
+  const auto at = [](int i, int k) {
+    return uniform_polygon(Vec2<float>(float(i) / n, float(k) / n), 128.0f);
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < n; ++k) {
+      EXPECT_LT(glm::distance(at(i, k), at(i + 1, k)), 3.0f / n) << i << " " << k;
+      EXPECT_LT(glm::distance(at(i, k), at(i, k + 1)), 3.0f / n) << i << " " << k;
+    }
+  }
 }
 
 TEST(Warp, CosineHemisphereHasItsDensity) {
