@@ -1,6 +1,6 @@
 #include "core/pbrt/inputs.h"
 
-#include "core/pbrt/spectrum.h"
+#include "core/pbrt/colors.h"
 #include "core/pbrt/textures.h"
 
 #include <fmt/format.h>

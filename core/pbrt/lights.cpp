@@ -1,6 +1,6 @@
 #include "core/pbrt/lights.h"
 
-#include "core/pbrt/spectrum.h"
+#include "core/pbrt/colors.h"
 
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>

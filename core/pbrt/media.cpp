@@ -1,7 +1,7 @@
 #include "core/pbrt/media.h"
 
 #include "core/pbrt/call.h"
-#include "core/pbrt/spectrum.h"
+#include "core/pbrt/colors.h"
 
 #include <glm/common.hpp>
 

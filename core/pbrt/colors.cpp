@@ -1,4 +1,4 @@
-#include "core/pbrt/spectrum.h"
+#include "core/pbrt/colors.h"
 
 #include "core/pbrt/named_spectra.h"
 
