@@ -13,7 +13,7 @@ namespace lockstep {
 // "In its plane" allows for a few roundings of the float coordinates, so that tilted planes count
 // too. Triangles without area or with non-finite vertices overlap nothing.
 //
-// Limit: in tilted planes, triangles thinner than about 2^-12 of the scene (its extent, or its
+// Limit: in tilted planes, triangles thinner than about 2^-14 of the scene (its extent, or its
 // distance from the origin if that is more) may be missed: their vertices do not fix their plane
 // well enough. The time grows with the pairs whose bounding rectangles in a plane overlap.
 std::vector<std::uint8_t> find_coincident_triangles(const float* positions,

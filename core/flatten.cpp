@@ -1,6 +1,5 @@
 #include "core/flatten.h"
 
-#include "core/coincidence.h"
 #include "core/fingerprint.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -12,6 +11,10 @@ namespace lockstep {
 namespace {
 
 void append(std::vector<float>& out, glm::vec3 v) { out.insert(out.end(), {v.x, v.y, v.z}); }
+
+void append_values(const std::vector<glm::vec3>& from, std::vector<float>& out) {
+  if (!from.empty()) out.insert(out.end(), &from[0].x, &from[0].x + 3 * from.size());
+}
 
 // The scene's own shapes, then each object's: in the order of their numbers.
 template <class F>
@@ -31,9 +34,10 @@ void for_each_mesh(const SceneDescription& description, const F& f) {
 
 void append_mesh(FlatScene& flat, const TriangleMesh& mesh) {
   const auto first_vertex = std::int32_t(flat.positions.size() / 3);
-  for (const glm::vec3 p : mesh.positions) append(flat.positions, p);
+  append_values(mesh.positions, flat.positions);
   for (const glm::uvec3 t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) flat.triangles.push_back(first_vertex + std::int32_t(t[k]));
+    const glm::ivec3 moved = first_vertex + glm::ivec3(t);
+    flat.triangles.insert(flat.triangles.end(), {moved.x, moved.y, moved.z});
   }
 }
 
@@ -128,8 +132,9 @@ FeatureMask light_features(const FlatScene& flat) {
 void append_normals(FlatScene& flat, const SceneDescription& description) {
   if (!(flat.features & bit(Feature::SmoothNormals))) return;
   for_each_mesh(description, [&](const TriangleMesh& mesh) {
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-      append(flat.normals, mesh.normals.empty() ? glm::vec3(0.0f, 0.0f, 1.0f) : mesh.normals[i]);
+    append_values(mesh.normals, flat.normals);
+    for (std::size_t i = mesh.normals.size(); i < mesh.positions.size(); ++i) {
+      append(flat.normals, glm::vec3(0.0f, 0.0f, 1.0f));
     }
   });
 }
@@ -186,8 +191,6 @@ FlatScene flatten(const SceneDescription& description, glm::vec3 environment_rad
   flatten_lights(description, environment_radiance, flat);
   flat.features |= light_features(flat);
   append_uvs(flat, description);
-  flat.coincident = find_coincident_triangles(flat.positions.data(), flat.triangles.data(),
-                                              flat.triangles.size() / 3);
   pad(flat);
   flatten_camera(description.camera, description.film, flat);
   return flat;

@@ -61,6 +61,7 @@ struct FlatScene {
   std::vector<float> filter_x, filter_y;
 };
 
+// All but `coincident`, which the caller may search for beside other work.
 // `environment_radiance`: mean over the sphere where the environment is a map.
 FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance = {});
 

@@ -1,5 +1,6 @@
 #include "core/scene.h"
 
+#include "core/coincidence.h"
 #include "core/environment_map.h"
 #include "core/error.h"
 #include "core/expand_shapes.h"
@@ -7,6 +8,8 @@
 #include "core/ggx_albedo.h"
 #include "core/opacity.h"
 #include "core/texture_store.h"
+
+#include <tbb/parallel_invoke.h>
 
 #include <atomic>
 #include <optional>
@@ -118,6 +121,20 @@ struct Scene::Storage {
   SceneData data;
   std::uint64_t fingerprint = 0;
 
+  void find_coincident() {
+    flat.coincident = find_coincident_triangles(flat.positions.data(), flat.triangles.data(),
+                                                triangle_count());
+  }
+
+  std::uint64_t fingerprint_of_all() const {
+    std::uint64_t all = lockstep::fingerprint(flat) ^ textures.fingerprint() * 3u;
+    if (!ggx_albedo.empty()) all ^= 7u;
+    if (environment_map) all ^= environment_map->fingerprint() * 5u;
+    return all;
+  }
+
+  std::size_t triangle_count() const { return (flat.triangles.size() - 4) / 3; }  // padding aside
+
   void attach_shapes(RTCScene to, unsigned first, unsigned count) {
     for (unsigned id = first; id < first + count; ++id) {
       holes[id] = {&flat, &texture_table, id};
@@ -161,9 +178,6 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   }
   if (description.compensate_microfacets) s.ggx_albedo = make_ggx_albedo();
   s.flat = flatten(description, environment_radiance);
-  s.fingerprint = lockstep::fingerprint(s.flat) ^ s.textures.fingerprint() * 3u;
-  if (!s.ggx_albedo.empty()) s.fingerprint ^= 7u;
-  if (s.environment_map) s.fingerprint ^= s.environment_map->fingerprint() * 5u;
   description.shapes.clear();
   description.objects.clear();
   description.textures.clear();
@@ -173,6 +187,8 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   if (!s.device) throw Error("Embree cannot start for instruction set " + embree_isa);
   rtcSetDeviceMemoryMonitorFunction(s.device.get(), EmbreeMemory::count, &s.embree_memory);
   s.scene = new_scene(s.device.get());
+  tbb::parallel_invoke([&] { s.find_coincident(); },
+                       [&] { s.fingerprint = s.fingerprint_of_all(); });
   s.build();
   check(s.device.get());
 
@@ -189,7 +205,7 @@ Scene::Scene(Scene&&) noexcept = default;
 const SceneDescription& Scene::description() const { return storage_->description; }
 const SceneData& Scene::data() const { return storage_->data; }
 FeatureMask Scene::features() const { return storage_->data.features; }
-std::size_t Scene::triangle_count() const { return (storage_->flat.triangles.size() - 4) / 3; }
+std::size_t Scene::triangle_count() const { return storage_->triangle_count(); }
 SceneMemory Scene::memory() const {
   std::size_t images = storage_->textures.memory_bytes();
   if (storage_->environment_map) images += storage_->environment_map->memory_bytes();

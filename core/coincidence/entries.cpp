@@ -1,0 +1,97 @@
+#include "core/coincidence/entries.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <utility>
+
+namespace lockstep::coincidence {
+namespace {
+
+// Of a bucket, on average: so many fit the innermost caches.
+constexpr std::size_t kBucketEntries = 2048;
+// More buckets than this would be written to through too many pages at once.
+constexpr int kMostBucketBits = 11;
+
+// Stable, 11 bits of the key a pass.
+void radix_sort(std::span<Entry> entries, std::vector<Entry>& scratch) {
+  scratch.resize(entries.size());
+  std::span<Entry> from = entries, to = scratch;
+  for (int shift = 32; shift < 64; shift += 11) {
+    std::array<std::size_t, 2048> next{};
+    for (const Entry e : from) ++next[e >> shift & 2047];
+    std::size_t sum = 0;
+    for (std::size_t& n : next) sum += std::exchange(n, sum);
+    for (const Entry e : from) to[next[e >> shift & 2047]++] = e;
+    std::swap(from, to);
+  }
+  // The passes are odd in number: the last one left them in the scratch.
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
+}  // namespace
+
+void sort_entries(std::span<Entry> entries, std::vector<Entry>& scratch) {
+  constexpr std::size_t radix_pays = 4096;
+  if (entries.size() < radix_pays) {
+    std::sort(entries.begin(), entries.end());
+  } else if (!std::is_sorted(entries.begin(), entries.end())) {
+    radix_sort(entries, scratch);
+  }
+}
+
+Buckets::Buckets(std::vector<std::vector<Entry>>& shares) {
+  std::size_t total = 0;
+  for (const std::vector<Entry>& share : shares) total += share.size();
+  bits_ = std::min(static_cast<int>(std::bit_width(total / kBucketEntries)), kMostBucketBits);
+  const std::size_t buckets = std::size_t{1} << bits_;
+  const auto bucket_of = [shift = 64 - bits_](Entry e) { return shift < 64 ? e >> shift : 0; };
+
+  // How many entries each share has for each bucket, then where it puts them.
+  std::vector<std::vector<std::size_t>> places(shares.size());
+  tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
+    places[i].assign(buckets, 0);
+    for (const Entry e : shares[i]) ++places[i][bucket_of(e)];
+  });
+  std::size_t sum = 0;
+  for (std::size_t b = 0; b < buckets; ++b) {
+    begins_.push_back(sum);
+    for (std::vector<std::size_t>& place : places) sum += std::exchange(place[b], sum);
+  }
+  begins_.push_back(sum);
+
+  entries_ = std::make_unique_for_overwrite<Entry[]>(total);
+  tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
+    for (const Entry e : shares[i]) entries_[places[i][bucket_of(e)]++] = e;
+    shares[i] = {};
+  });
+}
+
+// A pass over the next bits of the keys leaves runs of a few entries to sort.
+void sort_shared_keys(std::span<const Entry> bucket, int common_bits, std::vector<Entry>& sorted) {
+  constexpr int bits = 12;
+  std::array<std::uint32_t, (1 << bits) + 1> ends{};
+  const auto run_of = [&](Entry e) { return e << common_bits >> (64 - bits); };
+  for (const Entry e : bucket) ++ends[run_of(e)];
+  // Where each run of several entries begins; entries alone in theirs are left out.
+  constexpr std::uint32_t alone = UINT32_MAX;
+  std::uint32_t sum = 0;
+  for (std::uint32_t& n : ends) n = n == 1 ? alone : std::exchange(sum, sum + n);
+  sorted.resize(sum);
+  for (const Entry e : bucket) {
+    std::uint32_t& place = ends[run_of(e)];
+    if (place != alone) sorted[place++] = e;
+  }
+  // Now each stands where its run ends.
+  std::uint32_t begin = 0;
+  for (const std::uint32_t end : ends) {
+    if (end == alone) continue;
+    std::sort(sorted.begin() + begin, sorted.begin() + end);
+    begin = end;
+  }
+}
+
+}  // namespace lockstep::coincidence
