@@ -215,7 +215,12 @@ std::uint64_t fingerprint(const FlatScene& flat) {
                                      &flat.material_maps, &flat.light_of_primitive}) {
     print.add_all(*values);
   }
-  for (const FlatInstance& instance : flat.instances) print.add(std::int32_t(instance.object));
+  for (const FlatInstance& instance : flat.instances) {
+    print.add(std::int32_t(instance.object));
+    for (int c = 0; c < 4; ++c) {
+      for (int r = 0; r < 4; ++r) print.add(instance.to_world[c][r]);
+    }
+  }
   const auto add_binding = [&](const TextureBinding& b) {
     print.add_all(std::array{b.texture, b.column, b.columns, std::int32_t(b.is_color), b.channel});
     print.add_all(std::array{b.power, b.scale.x, b.scale.y, b.scale.z});

@@ -1,43 +1,57 @@
 #include "experiments/compare.h"
 
 #include "core/error.h"
-#include "experiments/errors_csv.h"
+#include "core/read_scene.h"
+#include "experiments/compare_phase.h"
+#include "experiments/machine.h"
 #include "experiments/metrics.h"
-#include "experiments/output_file.h"
-#include "experiments/preview.h"
 #include "experiments/reference.h"
-#include "experiments/render_metadata.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
+#include <numeric>
 #include <set>
+#include <utility>
 
 namespace lockstep {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
 
-// One scene's part of the experiment, while it runs.
-struct Phase {
-  const CompareSettings& settings;
-  SceneComparison& result;
-  Scene scene;
-  RenderSettings render_settings;
-  ErrorsCsv& csv;
-  std::function<bool(double work, std::string_view label)> progress;  // work in samples per pixel
-};
+void check_reference(const CompareSettings& settings) {
+  if (settings.reference_file.empty()) return;
+  if (settings.scenes.size() > 1 || settings.depths.size() > 1) {
+    throw UsageError(
+        "--reference: one image is the reference of one scene at one depth; compare one at a time");
+  }
+}
+
+void check_targets(const CompareSettings& settings) {
+  for (const ErrorTarget& target : settings.targets) {
+    const auto place =
+        std::find_if(metrics().begin(), metrics().end(),
+                     [&](const Metric& metric) { return metric.name == target.metric; });
+    if (place == metrics().end() || !place->lower_is_better) {
+      std::string names;
+      for (const Metric& metric : metrics()) {
+        if (metric.lower_is_better) names += fmt::format(" {}", metric.name);
+      }
+      throw UsageError(
+          fmt::format("--targets: '{}' is not one of{}", target.metric, names));
+    }
+  }
+}
 
 void check_settings(const CompareSettings& settings) {
-  if (settings.scenes.empty()) throw UsageError("compare: name at least one scene");
-  if (settings.samplers.empty()) throw UsageError("compare: name at least one sampler");
-  if (!settings.reference_file.empty() && settings.scenes.size() > 1) {
-    throw UsageError(
-        "--reference: one image is the reference of one scene; compare one scene at a time");
-  }
+  if (settings.scenes.empty()) throw UsageError("compare: name at least one SCENE");
+  if (settings.samplers.empty()) throw UsageError("--samplers: name at least one sampler");
+  if (settings.directory.empty()) throw UsageError("--output: name a folder for the results");
+  check_reference(settings);
+  check_targets(settings);
   std::set<std::string> names;
   for (const SamplerSpec& sampler : settings.samplers) {
     if (!names.insert(to_string(sampler)).second) {
@@ -47,9 +61,12 @@ void check_settings(const CompareSettings& settings) {
   }
 }
 
-// The scene's name, or its file's without folder and extension; numbered where that is taken.
-std::string unique_label(const std::string& scene, std::set<std::string>& taken) {
-  const std::string stem = file_name_safe(fs::path(scene).stem().string());
+// The scene's name, or its file's without folder and extension, numbered where that is taken; with
+// the depth where there are several.
+std::string unique_label(const CompareSettings& settings, const std::string& scene, int depth,
+                         std::set<std::string>& taken) {
+  std::string stem = file_name_safe(fs::path(scene).stem().string());
+  if (settings.depths.size() > 1) stem += fmt::format("-depth{}", depth);
   std::string label = stem;
   for (int n = 2; !taken.insert(label).second; ++n) label = fmt::format("{}-{}", stem, n);
   return label;
@@ -64,15 +81,15 @@ SceneDescription read_for(const CompareSettings& settings, const std::string& sc
   return description;
 }
 
-SceneComparison describe(const Scene& scene, const CompareSettings& settings,
-                         const std::string& name, const std::string& label) {
+SceneComparison describe(const Scene& scene, int depth, const std::string& name,
+                         const std::string& label) {
   const SceneDescription& description = scene.description();
   SceneComparison result;
   result.scene = name;
   result.label = label;
   result.width = description.film.width;
   result.height = description.film.height;
-  result.depth = settings.depth.value_or(description.defaults.depth);
+  result.depth = depth;
   result.triangles = scene.triangle_count();
   result.features = feature_names(scene.features());
   result.left_out = feature_names(all_features & ~scene.features());
@@ -80,168 +97,151 @@ SceneComparison describe(const Scene& scene, const CompareSettings& settings,
   return result;
 }
 
-// A mistake in any scene is found before files are touched and hours are spent on the others.
-void check_scenes(const CompareSettings& settings) {
-  for (const std::string& scene : settings.scenes) read_scene(scene, settings.overrides);
+std::vector<int> depths_of(const CompareSettings& settings, const SceneDescription& scene) {
+  return settings.depths.empty() ? std::vector<int>{scene.defaults.depth} : settings.depths;
 }
 
-std::string in_directory(const CompareSettings& settings, const std::string& file) {
-  return (fs::path(settings.directory) / file).string();
-}
-
-void keep_images(Phase& phase, int sampler_index, const RenderResult& render) {
-  const SamplerSpec& sampler = phase.settings.samplers[std::size_t(sampler_index)];
-  const std::string stem = fmt::format("{}-{}-{}spp", phase.result.label,
-                                       file_name_safe(to_string(sampler)), render.stats.spp);
-  RunImages images{sampler_index, render.stats.spp, stem + ".exr", stem + ".png", ""};
-  Metadata metadata = render_metadata(phase.result.scene, sampler, phase.render_settings, render);
-  metadata.merge(override_metadata(phase.settings.overrides));
-  write_image(in_directory(phase.settings, images.exr), render.image, metadata);
-  write_image(in_directory(phase.settings, images.png),
-              exposed(render.image, phase.result.exposure));
-  if (render.weights) {
-    images.weights_png = stem + "-weights.png";
-    write_image(in_directory(phase.settings, stem + "-weights.exr"), *render.weights, metadata);
-    write_image(in_directory(phase.settings, images.weights_png), weights_as_grey(*render.weights));
+// How long renders of one sample per pixel take, in units that are about the same for all scenes.
+double cost_of(const CompareSettings& settings, const SceneDescription& scene) {
+  double cost = 0.0;
+  for (int depth : depths_of(settings, scene)) {
+    cost += double(scene.film.width) * scene.film.height * (1.0 + depth);
   }
-  phase.result.images.push_back(images);
+  return cost;
 }
 
-void add_spectrum(SceneComparison& scene, int sampler, int spp, const Image& image) {
-  const auto place =
-      std::find_if(scene.spectra.begin(), scene.spectra.end(), [&](const RunSpectrum& spectrum) {
-        return spectrum.sampler == sampler && spectrum.spp == spp;
-      });
-  RunSpectrum& spectrum = place != scene.spectra.end()
-                              ? *place
-                              : scene.spectra.emplace_back(RunSpectrum{sampler, spp, 0, {}});
-  average_in(spectrum.mean, error_spectrum(scene.reference.image, image), ++spectrum.renders);
+// Reads all scenes: a mistake in any of them is found before files are touched and hours are spent
+// on the others. Returns their costs.
+std::vector<double> check_scenes(const CompareSettings& settings) {
+  for (const std::string& scene : settings.scenes) scene_format(scene);
+  std::vector<double> costs;
+  for (const std::string& scene : settings.scenes) {
+    costs.push_back(cost_of(settings, read_for(settings, scene)));
+  }
+  return costs;
 }
 
-// Renders once with the settings, measures, and appends the row.
-void measure(Phase& phase, int sampler_index, double work_before) {
-  const SamplerSpec& sampler = phase.settings.samplers[std::size_t(sampler_index)];
-  const RenderSettings& settings = phase.render_settings;
-  const std::string label =
-      fmt::format("{}: {} at {} spp, seed {} of {}", phase.result.label, to_string(sampler),
-                  settings.spp, settings.seed + 1, phase.settings.seeds);
-  const auto show = [&](double fraction) {
-    return phase.progress(work_before + fraction * settings.spp, label);
+// The rows of all renders in the journal, each once.
+std::string rows_of(const Journal& journal) {
+  std::set<std::tuple<std::string, int, std::string, std::uint32_t, int>> seen;
+  std::string rows;
+  for (const JournalEntry& entry : journal.earlier()) {
+    const auto* measured = std::get_if<MeasuredRun>(&entry.what);
+    if (!measured) continue;
+    const Measurement& run = measured->run;
+    if (!seen.insert({entry.scene, entry.depth, entry.sampler, run.seed, run.spp}).second) continue;
+    rows += errors_csv_row(entry.scene, entry.depth, entry.sampler, run) + '\n';
+  }
+  return rows;
+}
+
+Json begin_note(const CompareSettings& settings) {
+  Json note = {{"begun", date_and_time()},
+               {"lockstep", version()},
+               {"machine", cpu_name()},
+               {"scenes", settings.scenes},
+               {"depths", settings.depths},
+               {"samplers", Json::array()},
+               {"spp", settings.rungs},
+               {"seeds", settings.seeds},
+               {"experiment", settings.experiment}};
+  for (const SamplerSpec& sampler : settings.samplers) {
+    note["samplers"].push_back(to_string(sampler));
+  }
+  return note;
+}
+
+Journal open_journal(const CompareSettings& settings) {
+  make_output_directory(settings.directory);
+  if (!settings.reference_folder.empty()) make_output_directory(settings.reference_folder);
+  return Journal(settings.directory, settings.resume);
+}
+
+// The experiment while it runs.
+struct Run {
+  const CompareSettings& settings;
+  const CompareProgress& progress;
+  const SceneDone& scene_done;
+  std::vector<double> costs;  // by scene
+  Journal& journal;
+  ErrorsCsv& csv;
+  Clock::time_point deadline;
+  std::set<std::string> labels = {};
+  Comparison comparison = {};
+
+  double all_costs() const { return std::accumulate(costs.begin(), costs.end(), 0.0); }
+};
+
+// One scene at one depth, whose share of the whole work is [begin, end).
+void compare_at(Run& run, const Scene& scene, const std::string& name, int depth, double begin,
+                double end) {
+  const CompareSettings& settings = run.settings;
+  run.comparison.scenes.push_back(
+      describe(scene, depth, name, unique_label(settings, name, depth, run.labels)));
+  SceneComparison& result = run.comparison.scenes.back();
+  RenderSettings render_settings = settings.render;
+  render_settings.depth = depth;
+  const double reference_work =
+      has_reference(settings, result, scene) ? 0.0 : double(reference_spp(settings));
+  const double total = reference_work + settings.seeds * work_per_seed(settings);
+  const auto show = [&](double work, std::string_view label) {
+    return !run.progress || run.progress(begin + (end - begin) * work / total, label);
   };
-  const RenderResult render = lockstep::render(phase.scene, sampler, settings, show);
-  const RenderStats& stats = render.stats;
-  Measurement run;
-  run.sampler = sampler_index;
-  run.seed = settings.seed;
-  run.spp = stats.spp;
-  run.cpu_seconds = stats.cpu_seconds;
-  run.wall_seconds = stats.wall_seconds;
-  run.pilot_spp = stats.pilot_spp;
-  run.mean_weight = stats.mean_weight;
-  run.lanes = stats.lanes;
-  run.lanes_active = stats.lanes_active;
-  run.nonfinite = stats.nonfinite;
-  run.errors = evaluate_metrics(phase.result.reference.image, render.image);
-  phase.result.packet_width = stats.width;
-  phase.result.threads = stats.threads;
-  phase.csv.append(phase.result.scene, to_string(sampler), run);
-  phase.result.runs.push_back(run);
-  add_spectrum(phase.result, sampler_index, stats.spp, render.image);
-  if (settings.seed == 0) keep_images(phase, sampler_index, render);
+  Phase phase{settings, result, scene, render_settings, run.journal, run.csv, show};
+  run.comparison.complete &= run_phase(phase, reference_work, run.deadline);
 }
 
-double work_per_seed(const CompareSettings& settings) {
-  double work = 0.0;
-  for (int spp : settings.rungs) work += spp * double(settings.samplers.size());
-  return work;
-}
-
-// First renders touch memory and code for the first time: they are made and thrown away.
-void warm_up(Phase& phase) {
-  RenderSettings settings = phase.render_settings;
-  settings.spp = std::min(4, phase.settings.rungs.front());
-  for (const SamplerSpec& sampler : phase.settings.samplers) {
-    render(phase.scene, sampler, settings,
-           [&](double) { return phase.progress(0.0, phase.result.label + ": warming up"); });
+void compare_scene(Run& run, std::size_t index, double done) {
+  const std::string& name = run.settings.scenes[index];
+  const Scene scene(read_for(run.settings, name), embree_isa(run.settings.render.isa));
+  const std::vector<int> depths = depths_of(run.settings, scene.description());
+  const double share = run.costs[index] / run.all_costs() / double(depths.size());
+  for (std::size_t d = 0; d < depths.size(); ++d) {
+    const double begin = done + double(d) * share;
+    compare_at(run, scene, name, depths[d], begin, begin + share);
+    const bool last = index + 1 == run.settings.scenes.size() && d + 1 == depths.size();
+    if (!run.scene_done || last) continue;
+    const bool complete = std::exchange(run.comparison.complete, false);
+    run.scene_done(run.comparison);
+    run.comparison.complete = complete;
   }
 }
 
-// Samplers are innermost and change their order, so that a disturbance of the machine falls on
-// all alike. Returns false where the time ran out.
-bool measure_all(Phase& phase, double work, Clock::time_point deadline) {
-  const int samplers = int(phase.settings.samplers.size());
-  const int rungs = int(phase.settings.rungs.size());
-  Clock::duration longest_seed{};
-  for (int seed = 0; seed < phase.settings.seeds; ++seed) {
-    const Clock::time_point start = Clock::now();
-    if (phase.settings.max_seconds > 0.0 && start + longest_seed > deadline && seed > 0)
-      return false;
-    phase.render_settings.seed = std::uint32_t(seed);
-    for (int rung = 0; rung < rungs; ++rung) {
-      phase.render_settings.spp = phase.settings.rungs[std::size_t(rung)];
-      for (int i = 0; i < samplers; ++i) {
-        measure(phase, (i + seed + rung) % samplers, work);
-        work += phase.render_settings.spp;
-      }
+void compare_all(Run& run) {
+  try {
+    double done = 0.0;
+    for (std::size_t s = 0; s < run.settings.scenes.size(); ++s) {
+      compare_scene(run, s, done);
+      done += run.costs[s] / run.all_costs();
     }
-    longest_seed = std::max(longest_seed, Clock::now() - start);
+  } catch (const Cancelled&) {
+    run.comparison.complete = false;
+    std::vector<SceneComparison>& scenes = run.comparison.scenes;
+    if (!scenes.empty() && scenes.back().runs.empty()) scenes.pop_back();
   }
-  return true;
-}
-
-// The reference, then all runs. Returns false where the time ran out.
-bool run_phase(Phase& phase, double reference_work, Clock::time_point deadline) {
-  const auto show = [&](double fraction) {
-    return phase.progress(fraction * reference_work, phase.result.label + ": reference");
-  };
-  phase.result.reference =
-      make_reference(phase.settings, phase.result, phase.scene, phase.render_settings, show);
-  phase.result.exposure = preview_exposure(phase.result.reference.image);
-  phase.result.reference_png = fmt::format("{}-reference.png", phase.result.label);
-  write_image(in_directory(phase.settings, phase.result.reference_png),
-              exposed(phase.result.reference.image, phase.result.exposure));
-  warm_up(phase);
-  return measure_all(phase, reference_work, deadline);
 }
 
 }  // namespace
 
-Comparison compare(const CompareSettings& settings, const CompareProgress& progress) {
+Comparison compare(const CompareSettings& settings, const CompareProgress& progress,
+                   const SceneDone& scene_done) {
   check_settings(settings);
-  check_scenes(settings);
-  make_output_directory(settings.directory);
-  ErrorsCsv csv(settings.directory);
-  const Clock::time_point deadline =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                         std::chrono::duration<double>(settings.max_seconds));
-  Comparison comparison;
-  comparison.settings = settings;
-  std::set<std::string> labels;
-  for (std::size_t s = 0; s < settings.scenes.size(); ++s) {
-    const std::string& name = settings.scenes[s];
-    Scene scene(read_for(settings, name), embree_isa(settings.render.isa));
-    comparison.scenes.push_back(describe(scene, settings, name, unique_label(name, labels)));
-    SceneComparison& result = comparison.scenes.back();
-
-    RenderSettings render_settings = settings.render;
-    render_settings.depth = result.depth;
-    const double reference_work =
-        has_reference(settings, result, scene) ? 0.0 : double(reference_spp(settings));
-    const double total = reference_work + settings.seeds * work_per_seed(settings);
-    const auto show = [&](double work, std::string_view label) {
-      return !progress ||
-             progress((double(s) + work / total) / double(settings.scenes.size()), label);
-    };
-    Phase phase{settings, result, std::move(scene), render_settings, csv, show};
-    try {
-      comparison.complete &= run_phase(phase, reference_work, deadline);
-    } catch (const Cancelled&) {
-      comparison.complete = false;
-      if (result.runs.empty()) comparison.scenes.pop_back();
-      break;
-    }
+  const std::vector<double> costs = check_scenes(settings);
+  Journal journal = open_journal(settings);
+  if (!settings.resume) set_aside((fs::path(settings.directory) / "errors.csv").string());
+  ErrorsCsv csv(settings.directory, rows_of(journal));
+  Run run{settings, progress, scene_done, costs, journal, csv,
+          Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                             std::chrono::duration<double>(settings.max_seconds))};
+  run.comparison.settings = settings;
+  run.journal.add_note(begin_note(settings));
+  if (!settings.experiment.empty()) {
+    write_text_file((fs::path(settings.directory) / "experiment.toml").string(),
+                    settings.experiment);
   }
-  return comparison;
+  compare_all(run);
+  run.journal.add_note({{run.comparison.complete ? "complete" : "stopped", date_and_time()}});
+  return run.comparison;
 }
 
 }  // namespace lockstep

@@ -32,21 +32,36 @@ void warn(const Comparison& comparison) {
   }
 }
 
+void write_results(const Comparison& comparison, const nlohmann::ordered_json& summary) {
+  using Json = nlohmann::ordered_json;
+  const fs::path directory = comparison.settings.directory;
+  const std::string text = summary.dump(1, ' ', false, Json::error_handler_t::replace);
+  write_text_file((directory / "summary.json").string(), text + '\n');
+  write_text_file((directory / "spectra.csv").string(), spectra_csv(comparison));
+  write_text_file((directory / "report.html").string(), report_html(summary));
+}
+
 }  // namespace
 
 void run_comparison(const CompareSettings& settings, bool quiet) {
   ProgressMeter meter(quiet);
-  const Comparison comparison = compare(settings, [&](double fraction, std::string_view label) {
+  const auto show = [&](double fraction, std::string_view label) {
     meter.show(fraction, label);
     return !interrupted();
-  });
+  };
+  // As they come: who looks in, or must kill the run, finds the scenes that are done.
+  const auto scene_done = [](const Comparison& so_far) {
+    write_results(so_far, summarize(so_far));
+  };
+  const Comparison comparison = compare(settings, show, scene_done);
   meter.clear();
   warn(comparison);
+  if (interrupted() && comparison.scenes.empty()) {
+    throw Error("stopped by the user before anything was measured; --resume goes on from here");
+  }
   const auto summary = summarize(comparison);
+  write_results(comparison, summary);
   const fs::path directory = settings.directory;
-  write_text_file((directory / "summary.json").string(), summary.dump(1) + '\n');
-  write_text_file((directory / "spectra.csv").string(), spectra_csv(comparison));
-  write_text_file((directory / "report.html").string(), report_html(summary));
   fmt::print("{}\n", results_table(summary));
   for (const auto& [what, file] : {std::pair{"Every render", "errors.csv"},
                                    {"Spectra", "spectra.csv"},
@@ -56,7 +71,9 @@ void run_comparison(const CompareSettings& settings, bool quiet) {
     fmt::print("{:14}{}\n", fmt::format("{}:", what), (directory / file).string());
   }
   if (interrupted())
-    throw Error("stopped by the user; what was measured until then is in the report");
+    throw Error(
+        "stopped by the user; what was measured until then is in the report, and --resume goes on "
+        "from there");
 }
 
 }  // namespace lockstep

@@ -1,24 +1,43 @@
 #include "experiments/equal_time.h"
 
+#include "experiments/metrics.h"
+
 #include <algorithm>
 #include <set>
 
 namespace lockstep {
 namespace {
 
-double cpu_median(const std::vector<const Measurement*>& runs) {
-  return quantile(values_of(runs, [](const Measurement& run) { return run.cpu_seconds; }), 0.5);
-}
+double cpu_median(const Rung& rung) { return quantile(rung.cpu_times, 0.5); }
 
 // One seed's errors at the rungs' median times: noise in a single timing stays out of the ratio.
 std::vector<CurvePoint> seed_curve(const Rungs& rungs, std::uint32_t seed, std::size_t metric) {
   std::vector<CurvePoint> curve;
-  for (const auto& [spp, runs] : rungs) {
-    for (const Measurement* run : runs) {
-      if (run->seed == seed) curve.push_back({cpu_median(runs), run->errors[metric]});
+  for (const auto& [spp, rung] : rungs) {
+    for (const Measurement* run : rung.runs) {
+      if (run->seed == seed) curve.push_back({cpu_median(rung), run->errors[metric]});
     }
   }
   return curve;
+}
+
+// The ratio of what `value` reads off the two samplers' curves of each seed.
+template <class Value>
+std::optional<Ratio> ratio_of(const Rungs& rungs, const Rungs& base, std::size_t metric,
+                              Value value) {
+  std::set<std::uint32_t> seeds;
+  for (const auto& [spp, rung] : rungs) {
+    for (const Measurement* run : rung.runs) seeds.insert(run->seed);
+  }
+  std::vector<double> values, base_values;
+  for (std::uint32_t seed : seeds) {
+    const std::optional<double> own = value(seed_curve(rungs, seed, metric));
+    const std::optional<double> other = value(seed_curve(base, seed, metric));
+    if (!own || !other) continue;
+    values.push_back(*own);
+    base_values.push_back(*other);
+  }
+  return paired_ratio(values, base_values);
 }
 
 }  // namespace
@@ -26,10 +45,16 @@ std::vector<CurvePoint> seed_curve(const Rungs& rungs, std::uint32_t seed, std::
 Rungs rungs_of(const SceneComparison& scene, int sampler) {
   Rungs rungs;
   for (const Measurement& run : scene.runs) {
-    if (run.sampler == sampler) rungs[run.spp].push_back(&run);
+    if (run.sampler != sampler) continue;
+    rungs[run.spp].runs.push_back(&run);
+    rungs[run.spp].cpu_times.push_back(run.cpu_seconds);
   }
-  for (auto& [spp, runs] : rungs) {
-    std::sort(runs.begin(), runs.end(),
+  for (const TimingRepeat& repeat : scene.repeats) {
+    if (repeat.sampler != sampler || !rungs.contains(repeat.spp)) continue;
+    rungs[repeat.spp].cpu_times.push_back(repeat.cpu_seconds);
+  }
+  for (auto& [spp, rung] : rungs) {
+    std::sort(rung.runs.begin(), rung.runs.end(),
               [](const Measurement* a, const Measurement* b) { return a->seed < b->seed; });
   }
   return rungs;
@@ -37,9 +62,9 @@ Rungs rungs_of(const SceneComparison& scene, int sampler) {
 
 std::vector<CurvePoint> median_curve(const Rungs& rungs, std::size_t metric) {
   std::vector<CurvePoint> curve;
-  for (const auto& [spp, runs] : rungs) {
+  for (const auto& [spp, rung] : rungs) {
     const auto error = [&](const Measurement& run) { return run.errors[metric]; };
-    curve.push_back({cpu_median(runs), quantile(values_of(runs, error), 0.5)});
+    curve.push_back({cpu_median(rung), quantile(values_of(rung.runs, error), 0.5)});
   }
   return curve;
 }
@@ -52,19 +77,24 @@ std::optional<TimeRange> common_times(const std::vector<Rungs>& samplers) {
 
 std::optional<Ratio> ratio_at(const Rungs& rungs, const Rungs& base, std::size_t metric,
                               double time) {
-  std::set<std::uint32_t> seeds;
-  for (const auto& [spp, runs] : rungs) {
-    for (const Measurement* run : runs) seeds.insert(run->seed);
-  }
-  std::vector<double> errors, base_errors;
-  for (std::uint32_t seed : seeds) {
-    const std::optional<double> error = error_at(seed_curve(rungs, seed, metric), time);
-    const std::optional<double> base_error = error_at(seed_curve(base, seed, metric), time);
-    if (!error || !base_error) continue;
-    errors.push_back(*error);
-    base_errors.push_back(*base_error);
-  }
-  return paired_ratio(errors, base_errors);
+  return ratio_of(rungs, base, metric, [time](std::vector<CurvePoint> curve) {
+    return error_at(std::move(curve), time);
+  });
+}
+
+bool is_near_reference(const Reference& reference, const Rung& rung, std::size_t metric) {
+  constexpr double kNear = 3.0;
+  const auto own = reference.errors.find(std::string(metrics()[metric].name));
+  if (own == reference.errors.end()) return false;
+  const auto error = [&](const Measurement& run) { return run.errors[metric]; };
+  return quantile(values_of(rung.runs, error), 0.5) < kNear * own->second;
+}
+
+std::optional<Ratio> time_ratio(const Rungs& rungs, const Rungs& base, std::size_t metric,
+                                double error) {
+  return ratio_of(rungs, base, metric, [error](std::vector<CurvePoint> curve) {
+    return time_at(std::move(curve), error);
+  });
 }
 
 }  // namespace lockstep

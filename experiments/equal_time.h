@@ -10,8 +10,15 @@
 
 namespace lockstep {
 
-// Runs by sample count; each list is in the order of the seeds.
-using Rungs = std::map<int, std::vector<const Measurement*>>;
+// The renders of one sample count: runs in the order of the seeds, and the CPU times of all, those
+// repeated for their time alone included.
+struct Rung {
+  std::vector<const Measurement*> runs;
+  std::vector<double> cpu_times;
+};
+
+// By sample count.
+using Rungs = std::map<int, Rung>;
 
 Rungs rungs_of(const SceneComparison& scene, int sampler);
 
@@ -32,5 +39,14 @@ std::optional<TimeRange> common_times(const std::vector<Rungs>& samplers);
 // where no seed of both covers the time, or an error is zero.
 std::optional<Ratio> ratio_at(const Rungs& rungs, const Rungs& base, std::size_t metric,
                               double time);
+
+// True where the rung's median of the metric is below three times what the reference itself is off
+// by: much of it may be the reference's. False where that is not known.
+bool is_near_reference(const Reference& reference, const Rung& rung, std::size_t metric);
+
+// Ratio of the CPU time that one sampler needs for `error` to another's, paired over the seeds that
+// both reach it with. Empty where no seed of both does.
+std::optional<Ratio> time_ratio(const Rungs& rungs, const Rungs& base, std::size_t metric,
+                                double error);
 
 }  // namespace lockstep

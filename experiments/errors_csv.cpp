@@ -1,6 +1,5 @@
 #include "experiments/errors_csv.h"
 
-#include "core/error.h"
 #include "experiments/metrics.h"
 
 #include <fmt/format.h>
@@ -26,15 +25,17 @@ std::string csv_field(std::string_view text) {
 std::string errors_csv_header() {
   std::string line = "scene,sampler,seed,spp,cpu_seconds,wall_seconds";
   for (const Metric& metric : metrics()) line += fmt::format(",{}", metric.name);
-  return line;
+  return line + ",depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads";
 }
 
-std::string errors_csv_row(std::string_view scene, std::string_view sampler,
+std::string errors_csv_row(std::string_view scene, int depth, std::string_view sampler,
                            const Measurement& run) {
-  std::string line = fmt::format("{},{},{},{},{:.6g},{:.6g}", csv_field(scene), csv_field(sampler),
+  std::string line = fmt::format("{},{},{},{},{},{}", csv_field(scene), csv_field(sampler),
                                  run.seed, run.spp, run.cpu_seconds, run.wall_seconds);
-  for (double error : run.errors) line += fmt::format(",{:.9g}", error);
-  return line;
+  for (double error : run.errors) line += fmt::format(",{}", error);
+  return line + fmt::format(",{},{},{},{},{},{},{},{}", depth, run.pilot_spp, run.mean_weight,
+                            to_string(run.lanes), run.lanes_active, run.nonfinite,
+                            run.packet_width, run.threads);
 }
 
 std::string spectra_csv(const Comparison& comparison) {
@@ -56,20 +57,16 @@ std::string spectra_csv(const Comparison& comparison) {
   return text;
 }
 
-ErrorsCsv::ErrorsCsv(const std::string& directory)
-    : path_((fs::path(directory) / "errors.csv").string()) {
-  std::error_code error;
-  if (fs::exists(path_, error)) {
-    fs::rename(path_, fs::path(directory) / "errors-previous.csv", error);
-  }
-  file_.open(path_);
-  file_ << errors_csv_header() << std::endl;
-  if (!file_) throw Error(path_ + ": cannot be written; choose another folder");
-}
+ErrorsCsv::ErrorsCsv(const std::string& directory, std::string_view rows)
+    : file_([&] {
+        const std::string path = (fs::path(directory) / "errors.csv").string();
+        write_text_file(path, errors_csv_header() + '\n' + std::string(rows));
+        return path;
+      }()) {}
 
-void ErrorsCsv::append(std::string_view scene, std::string_view sampler, const Measurement& run) {
-  file_ << errors_csv_row(scene, sampler, run) << std::endl;
-  if (!file_) throw Error(path_ + ": cannot be written; is the disk full?");
+void ErrorsCsv::append(std::string_view scene, int depth, std::string_view sampler,
+                       const Measurement& run) {
+  file_.append(errors_csv_row(scene, depth, sampler, run) + '\n');
 }
 
 }  // namespace lockstep

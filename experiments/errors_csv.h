@@ -3,8 +3,8 @@
 #pragma once
 
 #include "experiments/compare.h"
+#include "experiments/output_file.h"
 
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -13,25 +13,27 @@ namespace lockstep {
 // A field as RFC 4180 wants it: quoted where it holds a comma, a quote or a line break.
 std::string csv_field(std::string_view text);
 
-// scene,sampler,seed,spp,cpu_seconds,wall_seconds, then the metrics in the order of metrics().
+// scene,sampler,seed,spp,cpu_seconds,wall_seconds, then the metrics in the order of metrics(), then
+// depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads. Numbers have all their
+// digits.
 std::string errors_csv_header();
-std::string errors_csv_row(std::string_view scene, std::string_view sampler,
+std::string errors_csv_row(std::string_view scene, int depth, std::string_view sampler,
                            const Measurement& run);
 
 // The whole of spectra.csv: scene,depth,sampler,spp,frequency,power. A row for each ring of
 // frequencies (cycles per pixel) with the power in it, averaged over seeds; see error_spectrum().
 std::string spectra_csv(const Comparison& comparison);
 
-// Starts the file anew; one from an earlier run is kept as errors-previous.csv.
+// The file as it grows.
 class ErrorsCsv {
  public:
-  explicit ErrorsCsv(const std::string& directory);
-  void append(std::string_view scene, std::string_view sampler,
+  // Writes the file anew with these rows, which end in line breaks. Throws Error.
+  ErrorsCsv(const std::string& directory, std::string_view rows);
+  void append(std::string_view scene, int depth, std::string_view sampler,
               const Measurement& run);  // throws Error
 
  private:
-  std::string path_;
-  std::ofstream file_;
+  AppendFile file_;
 };
 
 }  // namespace lockstep

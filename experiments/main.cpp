@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
   lockstep::add_demo_command(program, run);
   lockstep::add_profile_command(program, run);
   lockstep::add_metrics_command(program, run);
+  lockstep::add_runs_command(program, run);
   lockstep::add_info_command(program, run);
   lockstep::add_scenes_command(program, run);
   lockstep::add_samplers_command(program, run);

@@ -22,6 +22,33 @@ std::optional<int> positive(std::string_view text, int largest) {
   return value;
 }
 
+std::optional<double> positive_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  if (!(value > 0.0 && value < 1e12)) return {};
+  return value;
+}
+
+template <class T>
+std::vector<T> sorted_once(std::vector<T> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
+}
+
+// Numbers from 1 to `largest`; `complaint` is the UsageError's text where one is none.
+template <class Complaint>
+std::vector<int> counts_in(std::string_view text, int largest, Complaint complaint) {
+  std::vector<int> counts;
+  for (const std::string& item : split_at_commas(text)) {
+    const std::optional<int> count = positive(item, largest);
+    if (!count) throw UsageError(complaint());
+    counts.push_back(*count);
+  }
+  return sorted_once(std::move(counts));
+}
+
 // Membership in a list that the option's description already gives.
 CLI::Validator one_of(const std::vector<std::string>& choices) {
   return CLI::Validator(
@@ -149,6 +176,16 @@ SceneDescription read_described(const std::string& scene, const RendererOptions&
   return description;
 }
 
+std::vector<std::string> split_at_commas(std::string_view text) {
+  std::vector<std::string> items;
+  for (std::size_t at = 0; at <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    items.emplace_back(text.substr(at, comma - at));
+    at = comma + 1;
+  }
+  return items;
+}
+
 std::vector<float> parse_weights(std::string_view text) {
   std::vector<float> weights;
   for (std::string_view rest = text;;) {
@@ -183,22 +220,44 @@ glm::ivec2 parse_resolution(std::string_view text) {
 }
 
 std::vector<int> parse_sample_counts(std::string_view text) {
-  std::vector<int> counts;
-  for (std::string_view rest = text;;) {
-    const std::size_t comma = rest.find(',');
-    const std::optional<int> count = positive(rest.substr(0, comma), 1 << 24);
-    if (!count) {
+  return counts_in(text, 1 << 24, [text] {
+    return fmt::format(
+        "--spp: '{}' is not a list of samples per pixel from 1 to 16777216, such as 4,16,64", text);
+  });
+}
+
+std::vector<int> parse_depths(std::string_view text) {
+  return counts_in(text, 1000, [text] {
+    return fmt::format("--depth: '{}' is not a list of depths from 1 to 1000, such as 1,5", text);
+  });
+}
+
+std::vector<double> parse_time_budgets(std::string_view text) {
+  std::vector<double> budgets;
+  for (const std::string& item : split_at_commas(text)) {
+    const std::optional<double> seconds = positive_number(item);
+    if (!seconds) {
       throw UsageError(fmt::format(
-          "--spp: '{}' is not a list of samples per pixel from 1 to 16777216, such as 4,16,64",
-          text));
+          "--time-budgets: '{}' is not a list of seconds of CPU time above 0, such as 1,2,4", text));
     }
-    counts.push_back(*count);
-    if (comma == std::string_view::npos) break;
-    rest.remove_prefix(comma + 1);
+    budgets.push_back(*seconds);
   }
-  std::sort(counts.begin(), counts.end());
-  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
-  return counts;
+  return sorted_once(std::move(budgets));
+}
+
+std::vector<std::pair<std::string, double>> parse_targets(std::string_view text) {
+  std::vector<std::pair<std::string, double>> targets;
+  for (const std::string& item : split_at_commas(text)) {
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const std::optional<double> error =
+        positive_number(std::string_view(item).substr(std::min(equals + 1, item.size())));
+    if (!error) {
+      throw UsageError(fmt::format(
+          "--targets: '{}' is not METRIC=ERROR with an error above 0, such as flip_ldr=0.05", item));
+    }
+    targets.emplace_back(item.substr(0, equals), *error);
+  }
+  return targets;
 }
 
 }  // namespace lockstep

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lockstep {
@@ -54,5 +55,14 @@ glm::ivec2 parse_resolution(std::string_view text);
 
 // "1,4,16": positive and ascending after sorting; duplicates go. Throws UsageError.
 std::vector<int> parse_sample_counts(std::string_view text);
+std::vector<int> parse_depths(std::string_view text);
+
+// "0.5,1,2": positive and ascending after sorting; duplicates go. Throws UsageError.
+std::vector<double> parse_time_budgets(std::string_view text);
+
+// "flip_ldr=0.03,rmse=0.1": names before positive numbers. Throws UsageError.
+std::vector<std::pair<std::string, double>> parse_targets(std::string_view text);
+
+std::vector<std::string> split_at_commas(std::string_view text);
 
 }  // namespace lockstep

@@ -3,7 +3,10 @@
 #include "core/error.h"
 #include "core/image.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cctype>
 #include <cerrno>
@@ -53,11 +56,81 @@ void make_output_directory(const std::string& path) {
 
 void write_text_file(const std::string& path, std::string_view text) {
   const std::string temporary = path + ".part";
+  std::error_code error;
+  errno = 0;
   std::ofstream file(temporary, std::ios::binary);
   file << text;
   file.close();
-  if (!file) throw Error(fmt::format("{}: cannot be written; is the disk full?", path));
-  fs::rename(temporary, path);
+  if (!file) {
+    error.assign(errno ? errno : EIO, std::generic_category());
+  } else {
+    fs::rename(temporary, path, error);
+  }
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  throw Error(
+      fmt::format("{}: cannot be written: {}; make room or choose another place; what was there "
+                  "before is unchanged",
+                  path, error.message()));
+}
+
+void set_aside(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return;
+  const fs::path whole(path);
+  const std::string stem = (whole.parent_path() / whole.stem()).string() + "-previous";
+  std::string target = stem + whole.extension().string();
+  for (int n = 2; fs::exists(target, error); ++n) {
+    target = fmt::format("{}-{}{}", stem, n, whole.extension().string());
+  }
+  fs::rename(path, target, error);
+  if (error) throw Error(fmt::format("{}: cannot be renamed: {}", path, error.message()));
+}
+
+AppendFile::AppendFile(const std::string& path)
+    : path_(path), file_(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666)) {
+  if (file_ < 0) fail(errno);
+  if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(file_);
+    throw Error(path_ + ": another process writes to this file; wait for it, or choose another "
+                        "folder");
+  }
+}
+
+AppendFile::~AppendFile() { ::close(file_); }
+
+void AppendFile::fail(int error) const {
+  throw Error(fmt::format("{}: cannot be written: {}; what was written before is unchanged", path_,
+                          std::strerror(error)));
+}
+
+void AppendFile::append(std::string_view text) {
+  const off_t size = ::lseek(file_, 0, SEEK_END);
+  while (!text.empty()) {
+    const ssize_t written = ::write(file_, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const int error = written < 0 ? errno : ENOSPC;
+      if (::ftruncate(file_, size) != 0) fail(errno);
+      fail(error);
+    }
+    text.remove_prefix(std::size_t(written));
+  }
+  // Some file systems find out that they are full only now; those that cannot do this are no error.
+  if (::fdatasync(file_) != 0 && errno != EINVAL && errno != EROFS) fail(errno);
+}
+
+void AppendFile::truncate(std::uint64_t size) {
+  if (::ftruncate(file_, off_t(size)) != 0) fail(errno);
+}
+
+bool is_being_appended(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool locked = ::flock(file, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return locked;
 }
 
 std::string file_name_safe(std::string_view text) {

@@ -40,13 +40,18 @@ ProgressMeter::~ProgressMeter() { clear(); }
 
 void ProgressMeter::show(double fraction, std::string_view label) {
   const Clock::time_point now = Clock::now();
+  if (first_ < 0.0) {
+    first_ = fraction;
+    start_ = now;
+  }
   if (quiet_ || seconds_between(last_, now) < (terminal_ ? kTerminalSeconds : kPlainSeconds))
     return;
   last_ = now;
   const double elapsed = seconds_between(start_, now);
   std::string line = fmt::format("{:3.0f} %  {}", 100.0 * fraction, label);
-  if (fraction > 0.0 && elapsed > kSettleSeconds) {
-    line += fmt::format(", {} left", duration_text(elapsed * (1.0 - fraction) / fraction));
+  if (fraction > first_ && elapsed > kSettleSeconds) {
+    const double left = elapsed * (1.0 - fraction) / (fraction - first_);
+    line += fmt::format(", {} left", duration_text(left));
   }
   if (terminal_) {
     fmt::print(stderr, "\r{}\x1b[K", line);
@@ -67,6 +72,7 @@ void ProgressMeter::clear() {
 void catch_interrupts() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its write
 }
 
 bool interrupted() { return interrupt_flag != 0; }

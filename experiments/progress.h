@@ -27,6 +27,7 @@ class ProgressMeter {
   bool quiet_;
   bool terminal_;
   bool line_open_ = false;
+  double first_ = -1.0;  // the fraction at which it began: some may have been done before
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;
 };

@@ -49,15 +49,24 @@ std::string equal_time_table(const Json& summary, const Json& scene, const Json&
       "\n  at {:.3g} s of CPU time: medians and ratios to {}; * 95 % interval excludes 1\n",
       budget["cpu_seconds"].get<double>(), scene["samplers"][0]["sampler"].get<std::string>());
   text += header_line(summary, width, true) + '\n';
+  bool is_complete = true;
   for (const Json& row : budget["samplers"]) {
     text += fmt::format("  {:{}}", row["sampler"].get<std::string>(), width);
     const bool is_base = &row == &budget["samplers"].front();
     for (const Json& column : summary["table"]) {
       const Json& cell = row[column["name"].get<std::string>()];
+      if (cell.is_null()) {
+        text += fmt::format(" {:<15}", "-");
+        is_complete = false;
+        continue;
+      }
       text += fmt::format(" {:<8} {:<6}", value_text(cell["median"].get<double>()),
                           is_base ? "" : ratio_text(cell["ratio"]));
     }
     text += '\n';
+  }
+  if (!is_complete) {
+    text += "  - not measured at this time, and nothing is extrapolated: give more or wider --spp\n";
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include "experiments/machine.h"
 #include "experiments/metrics.h"
 #include "experiments/render_metadata.h"
+#include "experiments/time_to_error.h"
 #include "experiments/verdict.h"
 
 #include <fmt/format.h>
@@ -23,10 +24,10 @@ constexpr std::pair<std::string_view, std::string_view> kTable[] = {
     {"low_pass_rmse", "low-pass RMSE"},
 };
 
-template <class Get>
-Json spread_json(const std::vector<const Measurement*>& runs, Get get) {
-  const Spread spread = spread_of(values_of(runs, get));
-  return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
+Json spread_json(const std::vector<double>& values) {
+  const Spread spread = spread_of(values);
+  return {
+      {"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}, {"mean", spread.mean}};
 }
 
 Json run_json(const Measurement& run) {
@@ -51,25 +52,51 @@ Json frequencies_json(const SceneComparison& scene) {
   return list;
 }
 
-Json rung_json(const SceneComparison& scene, int sampler, int spp,
-               const std::vector<const Measurement*>& runs) {
+template <class Get>
+double median_of(const std::vector<const Measurement*>& runs, Get get) {
+  return quantile(values_of(runs, get), 0.5);
+}
+
+// Times of all renders, those repeated for it included, and how well their median is known.
+Json timing_json(const Rung& rung, double limit) {
+  const std::optional<double> uncertainty = median_uncertainty(rung.cpu_times);
+  Json json = spread_json(rung.cpu_times);
+  json["renders"] = rung.cpu_times.size();
+  json["median_uncertainty"] = nullptr;
+  if (uncertainty) json["median_uncertainty"] = *uncertainty;
+  json["steady"] = uncertainty.value_or(0.0) <= limit;
+  return json;
+}
+
+// Metrics whose median is not far above the reference's own error.
+Json near_reference_json(const SceneComparison& scene, const Rung& rung) {
+  Json list = Json::array();
+  for (std::size_t m = 0; m < metrics().size(); ++m) {
+    if (is_near_reference(scene.reference, rung, m)) list.push_back(metrics()[m].name);
+  }
+  return list;
+}
+
+Json rung_json(const SceneComparison& scene, const CompareSettings& settings, int sampler, int spp,
+               const Rung& rung) {
+  const std::vector<const Measurement*>& runs = rung.runs;
   Json json = {
       {"spp", spp},
       {"pilot_spp", runs.front()->pilot_spp},
-      {"mean_weight",
-       quantile(values_of(runs, [](const Measurement& r) { return r.mean_weight; }), 0.5)},
+      {"mean_weight", median_of(runs, [](const Measurement& r) { return r.mean_weight; })},
       {"lanes", to_string(runs.front()->lanes)},
-      {"lanes_active",
-       quantile(values_of(runs, [](const Measurement& r) { return r.lanes_active; }), 0.5)}};
+      {"lanes_active", median_of(runs, [](const Measurement& r) { return r.lanes_active; })}};
   std::uint64_t nonfinite = 0;
   for (const Measurement* run : runs) nonfinite += run->nonfinite;
   json["nonfinite"] = nonfinite;
-  json["cpu_seconds"] = spread_json(runs, [](const Measurement& run) { return run.cpu_seconds; });
-  json["wall_seconds"] = spread_json(runs, [](const Measurement& run) { return run.wall_seconds; });
+  json["cpu_seconds"] = timing_json(rung, settings.timing_spread);
+  json["wall_seconds"] =
+      spread_json(values_of(runs, [](const Measurement& run) { return run.wall_seconds; }));
   for (std::size_t m = 0; m < metrics().size(); ++m) {
     json[std::string(metrics()[m].name)] =
-        spread_json(runs, [m](const Measurement& run) { return run.errors[m]; });
+        spread_json(values_of(runs, [m](const Measurement& run) { return run.errors[m]; }));
   }
+  json["near_reference"] = near_reference_json(scene, rung);
   for (const RunSpectrum& spectrum : scene.spectra) {
     if (spectrum.sampler == sampler && spectrum.spp == spp) {
       json["spectrum"] = spectrum_json(spectrum.mean);
@@ -92,30 +119,30 @@ Json ratio_json(const std::optional<Ratio>& ratio) {
   return json;
 }
 
+// Null where a sampler was not measured at `time`.
 Json budget_json(const std::vector<SamplerSpec>& samplers, const std::vector<Rungs>& rungs,
                  double time) {
   Json json = {{"cpu_seconds", time}, {"samplers", Json::array()}};
   for (std::size_t s = 0; s < samplers.size(); ++s) {
     Json entry = {{"sampler", to_string(samplers[s])}};
     for (std::size_t m = 0; m < metrics().size(); ++m) {
+      Json& cell = entry[std::string(metrics()[m].name)];
       const std::optional<double> error = error_at(median_curve(rungs[s], m), time);
       if (!error) continue;
-      entry[std::string(metrics()[m].name)] = {
-          {"median", *error}, {"ratio", ratio_json(ratio_at(rungs[s], rungs[0], m, time))}};
+      cell = {{"median", *error}, {"ratio", ratio_json(ratio_at(rungs[s], rungs[0], m, time))}};
     }
     json["samplers"].push_back(entry);
   }
   return json;
 }
 
-Json equal_time_json(const std::vector<SamplerSpec>& samplers, const std::vector<Rungs>& rungs) {
+Json equal_time_json(const CompareSettings& settings, const std::vector<Rungs>& rungs) {
   Json json = {{"common_range", nullptr}, {"budgets", Json::array()}};
   const std::optional<TimeRange> range = common_times(rungs);
-  if (!range) return json;
-  json["common_range"] = {range->low, range->high};
-  for (double time : time_budgets(*range)) {
-    json["budgets"].push_back(budget_json(samplers, rungs, time));
-  }
+  if (range) json["common_range"] = {range->low, range->high};
+  std::vector<double> budgets(settings.budgets.rbegin(), settings.budgets.rend());
+  if (budgets.empty() && range) budgets = time_budgets(*range);
+  for (double time : budgets) json["budgets"].push_back(budget_json(settings.samplers, rungs, time));
   return json;
 }
 
@@ -128,11 +155,13 @@ Json reference_json(const SceneComparison& scene) {
                {"relmse_estimate", nullptr}};
   if (reference.spp > 0) json["spp"] = reference.spp;
   if (reference.relmse) json["relmse_estimate"] = *reference.relmse;
+  json["own_errors"] = reference.errors;
   return json;
 }
 
-Json scene_json(const SceneComparison& scene, const std::vector<SamplerSpec>& samplers,
+Json scene_json(const SceneComparison& scene, const CompareSettings& settings,
                 const std::vector<Rungs>& rungs) {
+  const std::vector<SamplerSpec>& samplers = settings.samplers;
   Json json = {{"scene", scene.scene},
                {"label", scene.label},
                {"resolution", {scene.width, scene.height}},
@@ -150,12 +179,13 @@ Json scene_json(const SceneComparison& scene, const std::vector<SamplerSpec>& sa
     Json entry = {{"sampler", to_string(samplers[s])},
                   {"biased", !samplers[s].unbiased()},
                   {"rungs", Json::array()}};
-    for (const auto& [spp, runs] : rungs[s]) {
-      entry["rungs"].push_back(rung_json(scene, int(s), spp, runs));
+    for (const auto& [spp, rung] : rungs[s]) {
+      entry["rungs"].push_back(rung_json(scene, settings, int(s), spp, rung));
     }
     json["samplers"].push_back(entry);
   }
-  json["equal_time"] = equal_time_json(samplers, rungs);
+  json["equal_time"] = equal_time_json(settings, rungs);
+  json["time_to_error"] = times_to_errors_json(settings, rungs);
   return json;
 }
 
@@ -170,7 +200,9 @@ Json summarize(const Comparison& comparison) {
                {"seeds", settings.seeds},
                {"spp", settings.rungs},
                {"overrides", override_metadata(settings.overrides)},
-               {"complete", comparison.complete}};
+               {"complete", comparison.complete},
+               {"timing_spread", settings.timing_spread},
+               {"experiment", settings.experiment}};
   for (const Metric& metric : metrics()) {
     json["metrics"].push_back({{"name", metric.name},
                                {"title", metric.title},
@@ -187,9 +219,9 @@ Json summarize(const Comparison& comparison) {
     for (std::size_t s = 0; s < settings.samplers.size(); ++s) {
       rungs.push_back(rungs_of(scene, int(s)));
     }
-    const Json verdict = verdict_json(scene, settings.samplers, rungs);
+    const Json verdict = verdict_json(scene, settings, rungs);
     if (!verdict.is_null()) json["verdicts"].push_back(verdict);
-    json["scenes"].push_back(scene_json(scene, settings.samplers, rungs));
+    json["scenes"].push_back(scene_json(scene, settings, rungs));
   }
   return json;
 }

@@ -1,6 +1,7 @@
 #include "experiments/verdict.h"
 
 #include "experiments/metrics.h"
+#include "experiments/time_to_error.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -60,14 +61,20 @@ struct Verdict {
   std::optional<Best> best;
 };
 
-std::vector<double> budgets_of(const std::vector<Rungs>& rungs) {
+// The times asked for, as far as all cover them, longest first; those of the range where none is.
+std::vector<double> budgets_of(const CompareSettings& settings, const std::vector<Rungs>& rungs) {
   const std::optional<TimeRange> range = common_times(rungs);
-  return range ? time_budgets(*range) : std::vector<double>();
+  if (!range) return {};
+  std::vector<double> budgets;
+  for (double time : settings.budgets) {
+    if (time >= range->low && time <= range->high) budgets.insert(budgets.begin(), time);
+  }
+  return budgets.empty() ? time_budgets(*range) : budgets;
 }
 
-std::optional<Best> best_of(const std::vector<SamplerSpec>& samplers,
-                            const std::vector<Rungs>& rungs) {
-  const std::vector<double> times = budgets_of(rungs);
+std::optional<Best> best_of(const CompareSettings& settings, const std::vector<Rungs>& rungs) {
+  const std::vector<SamplerSpec>& samplers = settings.samplers;
+  const std::vector<double> times = budgets_of(settings, rungs);
   if (times.empty()) return {};
   std::vector<double> errors;
   for (const Rungs& own : rungs) errors.push_back(*error_at(median_curve(own, judge()), times[0]));
@@ -107,18 +114,19 @@ void sort_in(Verdict& verdict, const Standing& standing) {
   }
 }
 
-Verdict judged(const std::vector<SamplerSpec>& samplers, const std::vector<Rungs>& rungs) {
+Verdict judged(const CompareSettings& settings, const std::vector<Rungs>& rungs) {
+  const std::vector<SamplerSpec>& samplers = settings.samplers;
   Verdict verdict;
-  verdict.best = best_of(samplers, rungs);
+  verdict.best = best_of(settings, rungs);
   const auto is_rival = [](const SamplerSpec& spec) { return to_string(spec) == kRival; };
   const auto place = std::find_if(samplers.begin(), samplers.end(), is_rival);
   verdict.has_rival = place != samplers.end();
   if (!verdict.has_rival) return verdict;
   const Rungs& rival = rungs[std::size_t(place - samplers.begin())];
-  const std::vector<double> shared = budgets_of(rungs);
+  const std::vector<double> shared = budgets_of(settings, rungs);
   for (std::size_t s = 0; s < samplers.size(); ++s) {
     if (is_rival(samplers[s])) continue;
-    const std::vector<double> times = shared.empty() ? budgets_of({rungs[s], rival}) : shared;
+    const std::vector<double> times = shared.empty() ? budgets_of(settings, {rungs[s], rival}) : shared;
     sort_in(verdict, standing_of(to_string(samplers[s]), rungs[s], rival, times));
   }
   return verdict;
@@ -170,6 +178,47 @@ std::string best_text(const std::optional<Best>& best) {
   return text;
 }
 
+// "random at 4 spp, owen at 4 and 16 spp" of the rungs that `holds` picks.
+template <class Holds>
+std::string rungs_text(const CompareSettings& settings, const std::vector<Rungs>& rungs,
+                       Holds holds) {
+  std::vector<std::string> parts;
+  for (std::size_t s = 0; s < rungs.size(); ++s) {
+    std::vector<int> counts;
+    for (const auto& [spp, rung] : rungs[s]) {
+      if (holds(rung)) counts.push_back(spp);
+    }
+    if (counts.empty()) continue;
+    parts.push_back(
+        fmt::format("{} at {} spp", to_string(settings.samplers[s]), fmt::join(counts, ", ")));
+  }
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// What stands behind the verdict as further sentences, each with a space before it.
+std::string further_text(const SceneComparison& scene, const CompareSettings& settings,
+                         const std::vector<Rungs>& rungs) {
+  std::string text;
+  for (const TimesToError& times : times_to_errors(settings, rungs)) {
+    const std::string sentence = time_sentence(times, settings);
+    if (!sentence.empty()) text += fmt::format(" In time: {}.", sentence);
+  }
+  const std::string unsteady = rungs_text(settings, rungs, [&](const Rung& rung) {
+    return median_uncertainty(rung.cpu_times).value_or(0.0) > settings.timing_spread;
+  });
+  if (!unsteady.empty()) {
+    text += fmt::format(" The timing spread is large, medians are uncertain by more than {:.3g} %: {}.",
+                        100.0 * settings.timing_spread, unsteady);
+  }
+  const std::string near = rungs_text(settings, rungs, [&](const Rung& rung) {
+    return is_near_reference(scene.reference, rung, judge());
+  });
+  if (!near.empty()) {
+    text += fmt::format(" Less than three times the reference's own error: {}.", near);
+  }
+  return text;
+}
+
 Json standings_json(const std::vector<Standing>& standings) {
   Json list = Json::array();
   for (const Standing& standing : standings) {
@@ -187,16 +236,18 @@ Json standings_json(const std::vector<Standing>& standings) {
 
 }  // namespace
 
-Json verdict_json(const SceneComparison& scene, const std::vector<SamplerSpec>& samplers,
+Json verdict_json(const SceneComparison& scene, const CompareSettings& settings,
                   const std::vector<Rungs>& rungs) {
+  const std::vector<SamplerSpec>& samplers = settings.samplers;
   if (samplers.size() < 2) return nullptr;
-  const Verdict verdict = judged(samplers, rungs);
+  const Verdict verdict = judged(settings, rungs);
   Json json = {{"scene", scene.scene},
                {"depth", scene.depth},
                {"metric", kJudge},
-               {"sentence", fmt::format("{}, depth {}, by {}: {}; {}.", scene.scene, scene.depth,
+               {"sentence", fmt::format("{}, depth {}, by {}: {}; {}.{}", scene.scene, scene.depth,
                                         metrics()[judge()].title, rival_text(verdict),
-                                        best_text(verdict.best))},
+                                        best_text(verdict.best),
+                                        further_text(scene, settings, rungs))},
                {"loses_to_random", standings_json(verdict.lost)},
                {"beats_random", standings_json(verdict.won)},
                {"no_difference_shown", standings_json(verdict.level)},
