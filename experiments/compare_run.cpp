@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "experiments/errors_csv.h"
+#include "experiments/figures.h"
 #include "experiments/output_file.h"
 #include "experiments/progress.h"
 #include "experiments/report.h"
@@ -38,7 +39,8 @@ void write_results(const Comparison& comparison, const nlohmann::ordered_json& s
   const std::string text = summary.dump(1, ' ', false, Json::error_handler_t::replace);
   write_text_file((directory / "summary.json").string(), text + '\n');
   write_text_file((directory / "spectra.csv").string(), spectra_csv(comparison));
-  write_text_file((directory / "report.html").string(), report_html(summary));
+  write_text_file((directory / "report.html").string(),
+                  report_html(summary, report_images(comparison, summary, kReportImageBytes)));
 }
 
 }  // namespace
@@ -62,6 +64,7 @@ void run_comparison(const CompareSettings& settings, bool quiet) {
   const auto summary = summarize(comparison);
   write_results(comparison, summary);
   const fs::path directory = settings.directory;
+  const std::string figures = write_figures(summary, directory.string());
   fmt::print("{}\n", results_table(summary));
   for (const auto& [what, file] : {std::pair{"Every render", "errors.csv"},
                                    {"Spectra", "spectra.csv"},
@@ -70,6 +73,7 @@ void run_comparison(const CompareSettings& settings, bool quiet) {
                                    {"Report", "report.html"}}) {
     fmt::print("{:14}{}\n", fmt::format("{}:", what), (directory / file).string());
   }
+  fmt::print("{:14}{}\n", "Figures:", figures);
   if (interrupted())
     throw Error(
         "stopped by the user; what was measured until then is in the report, and --resume goes on "

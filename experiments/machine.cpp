@@ -1,7 +1,10 @@
 #include "experiments/machine.h"
 
+#include <embree3/rtcore_config.h>
+#include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
+#include <sys/utsname.h>
 
 #include <ctime>
 #include <fstream>
@@ -25,6 +28,12 @@ int cpu_count() {
   return sched_getaffinity(0, sizeof(set), &set) == 0 ? CPU_COUNT(&set) : 1;
 }
 
+std::string system_name() {
+  utsname system{};
+  if (uname(&system) != 0) return "unknown system";
+  return fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+}
+
 std::string date_and_time() {
   const std::time_t now = std::time(nullptr);
   std::tm local{};
@@ -38,6 +47,18 @@ std::uint64_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return std::uint64_t(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+}
+
+std::vector<std::pair<std::string, std::string>> component_versions() {
+#if defined(__clang__)
+  const std::string compiler = __VERSION__;  // names itself
+#else
+  const std::string compiler = "GCC " __VERSION__;
+#endif
+  return {{"compiler", compiler},
+          {"Embree", RTC_VERSION_STRING},
+          {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+                              FMT_VERSION % 100)}};
 }
 
 }  // namespace lockstep

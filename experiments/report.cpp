@@ -1,5 +1,8 @@
 #include "experiments/report.h"
 
+#include "experiments/display_image.h"
+#include "experiments/series_style.h"
+
 #include <utility>
 
 namespace lockstep {
@@ -14,15 +17,26 @@ std::string embeddable(const nlohmann::ordered_json& json) {
   return text;
 }
 
+// Display codes of magma, RGB after RGB, for 256 values from 0 to 1.
+nlohmann::ordered_json magma_codes() {
+  Image ramp(256, 1, 1);
+  for (int x = 0; x < ramp.width; ++x) *ramp.at(x, 0) = float(x) / float(ramp.width - 1);
+  nlohmann::ordered_json codes;
+  for (float value : magma(ramp).pixels) codes.push_back(display_code(value));
+  return codes;
+}
+
 }  // namespace
 
-std::string report_html(const nlohmann::ordered_json& summary) {
-  const std::string data = embeddable(summary);
+std::string report_html(const nlohmann::ordered_json& summary, const ReportImages& images) {
+  const std::string data = embeddable({{"summary", summary},
+                                       {"images", images.index},
+                                       {"magma", magma_codes()},
+                                       {"colours", kSeriesColours},
+                                       {"series_per_dash", kSeriesPerDash}});
   const std::pair<std::string_view, std::string_view> parts[] = {
-      {"{{CSS}}", report_assets::style},
-      {"{{D3}}", report_assets::d3},
-      {"{{DATA}}", data},
-      {"{{JS}}", report_assets::script},
+      {"{{CSS}}", report_assets::style}, {"{{D3}}", report_assets::d3},     {"{{DATA}}", data},
+      {"{{IMAGES}}", images.elements},   {"{{JS}}", report_assets::script},
   };
   // Parts stand in the page in this order; what is filled in is never searched again.
   std::string html;

@@ -1,6 +1,8 @@
 // report.html: one page that shows a comparison, readable without network and without the program.
-// Images stand beside it as files; everything else is inside.
+// Everything is inside: charts, images with their values, settings.
 #pragma once
+
+#include "experiments/report_images.h"
 
 #include <nlohmann/json.hpp>
 
@@ -9,12 +11,15 @@
 
 namespace lockstep {
 
+// Pages stay below 30 MB, of which text, script and numbers take less than 4.
+constexpr std::size_t kReportImageBytes = 26'000'000;
+
 // The page for what summarize() made.
-std::string report_html(const nlohmann::ordered_json& summary);
+std::string report_html(const nlohmann::ordered_json& summary, const ReportImages& images);
 
 // Sources of the page, embedded at build time.
 namespace report_assets {
-extern const std::string_view page;  // with {{CSS}}, {{D3}}, {{DATA}} and {{JS}} to fill in
+extern const std::string_view page;  // with {{CSS}}, {{D3}}, {{DATA}}, {{IMAGES}} and {{JS}}
 extern const std::string_view style;
 extern const std::string_view script;
 extern const std::string_view d3;

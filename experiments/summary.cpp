@@ -1,5 +1,6 @@
 #include "experiments/summary.h"
 
+#include "experiments/command_line.h"
 #include "experiments/equal_time.h"
 #include "experiments/machine.h"
 #include "experiments/metrics.h"
@@ -159,6 +160,26 @@ Json reference_json(const SceneComparison& scene) {
   return json;
 }
 
+// The command that renders what a scene's images show, without sampler, samples, seed and output.
+std::string render_command(const CompareSettings& settings, const SceneComparison& scene) {
+  std::vector<std::string> line = {"lockstep", "render", scene.scene};
+  const auto add = [&](const char* flag, std::string value) {
+    line.insert(line.end(), {flag, std::move(value)});
+  };
+  add("--depth", std::to_string(scene.depth));
+  add("--roulette-depth", std::to_string(settings.render.roulette_depth));
+  add("--resolution", fmt::format("{}x{}", scene.width, scene.height));
+  add("--isa", std::string(name(settings.render.isa)));
+  for (const auto& [key, value] : override_metadata(settings.overrides)) {
+    if (key == "camera") add("--camera", value);
+    if (key == "environment") add("--environment", value);
+    if (key == "environment_up") add("--environment-up", value);
+    if (key == "environment_scale") add("--environment-scale", value);
+    if (key == "compensate") line.push_back("--compensate");
+  }
+  return shell_line(line);
+}
+
 Json scene_json(const SceneComparison& scene, const CompareSettings& settings,
                 const std::vector<Rungs>& rungs) {
   const std::vector<SamplerSpec>& samplers = settings.samplers;
@@ -222,6 +243,12 @@ Json summarize(const Comparison& comparison) {
     const Json verdict = verdict_json(scene, settings, rungs);
     if (!verdict.is_null()) json["verdicts"].push_back(verdict);
     json["scenes"].push_back(scene_json(scene, settings, rungs));
+    json["scenes"].back()["render_command"] = render_command(settings, scene);
+  }
+  json["command"] = own_command_line();
+  json["system"] = system_name();
+  for (const auto& [component, number] : component_versions()) {
+    json["versions"][component] = number;
   }
   return json;
 }

@@ -5,7 +5,6 @@
 #include "experiments/errors_csv.h"
 #include "experiments/metrics.h"
 #include "experiments/output_file.h"
-#include "experiments/report.h"
 #include "experiments/summary.h"
 
 #include <gtest/gtest.h>
@@ -340,15 +339,6 @@ TEST(Summary, BiasedSamplersAreMarked) {
   EXPECT_EQ(summary["scenes"][0]["samplers"][0]["biased"], false);
   EXPECT_EQ(summary["scenes"][0]["samplers"][1]["biased"], true);
   EXPECT_NE(results_table(summary).find("rcs:combine=weight is biased"), std::string::npos);
-}
-
-TEST(Report, IsOnePageThatNeedsNothingElse) {
-  const std::string html = report_html(summarize(made_comparison()));
-  for (const char* mark : {"{{CSS}}", "{{D3}}", "{{DATA}}", "{{JS}}", "<script src", "<link"}) {
-    EXPECT_EQ(html.find(mark), std::string::npos) << mark;
-  }
-  EXPECT_EQ(html.find("made </script>"), std::string::npos) << "data must not end its element";
-  EXPECT_NE(html.find("made <\\/script> up"), std::string::npos);
 }
 
 TEST(DemoPlan, FitsIntoTheTimeAtAnySpeed) {

@@ -1,0 +1,304 @@
+// The image viewer: the reference and all methods at one zoom, place, exposure and kind of error map.
+
+// The viewer that keys are for: the one last touched, or else the first in sight.
+const viewers = [];
+let activeViewer = null;
+const inSight = (viewer) => {
+  const box = viewer.node.getBoundingClientRect();
+  return box.bottom > 80 && box.top < window.innerHeight - 80;
+};
+document.addEventListener("keydown", (event) => {
+  const form = event.target.closest && event.target.closest("input, select, textarea");
+  if (event.ctrlKey || event.altKey || event.metaKey || (form && form.type !== "range")) return;
+  if (form && event.key.startsWith("Arrow")) return;
+  const viewer = activeViewer && inSight(activeViewer) ? activeViewer : viewers.find(inSight);
+  const arrows = event.key.startsWith("Arrow") && !(viewer && viewer.node.contains(event.target));
+  if (viewer && !arrows && viewer.key(event.key)) event.preventDefault();
+});
+
+const largestZoom = 64;
+
+function imageViewer(section, scene, index) {
+  const choices = imageChoices(scene, index);
+  if (!choices.length) return;
+  const [width, height] = index.size;
+  const state = { choice: choices[0], methods: [], at: 0, before: 0, view: views[0], stops: 0,
+    zoom: 0, x: width / 2, y: height / 2, cursor: null };  // zoom 0: all of it; x, y: the middle in pixels
+
+  section.append("h3").text("Images");
+  section.append("p").attr("class", "muted").text(
+    `First seed. Keys: 1 to 9 choose an image (0 is the tenth), R goes to the reference and back, E to the next kind of map, ` +
+    `[ and ] change the exposure, + and − zoom, F shows all. Drag to move; the wheel zooms where Ctrl is held or the viewer has ` +
+    `the focus.` + (index.factor > 1 ? ` To keep this page small, ${index.factor} × ${index.factor} pixels are averaged to one ` +
+    "here; the EXR files beside the page have all." : "") +
+    (index.left_out ? ` ${index.left_out} more renders are in files beside the page.` : ""));
+  const box = section.append("div").attr({ class: "viewer", role: "group", "aria-label": `Images of ${scene.label}` });
+  const controls = box.append("div").attr("class", "controls");
+  const tabs = box.append("div").attr({ class: "chips tabs", role: "group", "aria-label": "Image shown" });
+  const canvas = box.append("canvas").attr({ tabindex: 0, role: "img" }).node();
+  const readout = box.append("div").attr({ class: "readout" });
+  const bar = box.append("div").attr("class", "scale");
+  const caption = box.append("div").attr({ class: "caption", "aria-live": "polite" });
+
+  // One canvas of image size for each method, painted again when view or exposure change.
+  const painted = new Map();
+  async function picture(method) {
+    const key = `${method.ids.radiance} ${state.view.name} ${state.view.scale === "fixed" ? 0 : state.stops}`;
+    if (painted.has(key)) return painted.get(key);
+    const gain = Math.pow(2, state.stops), view = state.view;
+    const of = await decodedMethod(method, index);
+    const rgba = view.paint(of, gain) || views[0].paint(of, gain);
+    const picture = document.createElement("canvas");
+    picture.width = width;
+    picture.height = height;
+    picture.getContext("2d").putImageData(new ImageData(rgba, width, height), 0, 0);
+    if (painted.size > 3 * state.methods.length) painted.clear();
+    painted.set(key, picture);
+    return picture;
+  }
+
+  const fit = () => Math.min(canvas.clientWidth / width, canvas.clientHeight / height);
+  const zoom = () => state.zoom || fit();
+  // The image's place on the canvas, in CSS pixels; all of it stands in the middle.
+  function corner() {
+    const z = zoom();
+    const along = (middle, size, room) => (size * z <= room ? (room - size * z) / 2
+      : Math.min(0, Math.max(room - size * z, room / 2 - middle * z)));
+    return { x: along(state.x, width, canvas.clientWidth), y: along(state.y, height, canvas.clientHeight), z };
+  }
+  function pixelAt(event) {
+    const rect = canvas.getBoundingClientRect(), place = corner();
+    const x = Math.floor((event.clientX - rect.left - place.x) / place.z);
+    const y = Math.floor((event.clientY - rect.top - place.y) / place.z);
+    return x >= 0 && y >= 0 && x < width && y < height ? { x, y } : null;
+  }
+
+  let turn = 0;
+  async function draw() {
+    const mine = ++turn, method = state.methods[state.at];
+    const image = await picture(method);
+    if (mine !== turn) return;
+    const dense = window.devicePixelRatio || 1;
+    canvas.width = Math.round(canvas.clientWidth * dense);
+    canvas.height = Math.round(canvas.clientHeight * dense);
+    const context = canvas.getContext("2d"), place = corner();
+    context.setTransform(dense, 0, 0, dense, 0, 0);
+    context.imageSmoothingEnabled = place.z * dense < 1;
+    context.imageSmoothingQuality = "high";
+    context.drawImage(image, place.x, place.y, width * place.z, height * place.z);
+    crops.outline(context, place);
+    canvas.dataset.shown = method.name;
+    canvas.setAttribute("aria-label", `${state.view.title} of ${method.name}`);
+    showValues();
+  }
+
+  // Values of the pixel under the cursor.
+  async function showValues() {
+    const method = state.methods[state.at], p = state.cursor;
+    const of = await decodedMethod(method, index);
+    if (!p || method !== state.methods[state.at] || p !== state.cursor) {
+      if (!p) readout.text("Point at a pixel for its values.");
+      return;
+    }
+    const i = p.y * width + p.x;
+    const rgb = (halves) => [0, 1, 2].map((c) => number(floatOfHalf[halves[3 * i + c]] / scene.exposure)).join("  ");
+    readout.html("");
+    const add = (name, text) => { const part = readout.append("span"); part.append("b").text(name); part.append("span").text(` ${text}`); };
+    add("pixel", `${p.x * index.factor}, ${p.y * index.factor}`);
+    add(method.name, rgb(of.radiance));
+    if (!of.reference) return;
+    add("reference", rgb(of.reference));
+    const error = luminance(of.radiance, 3 * i) - luminance(of.reference, 3 * i);
+    add("luminance error", `${error > 0 ? "+" : ""}${number(error / scene.exposure)}`);
+    if (of.flip) add("FLIP", (of.flip[i] / 255).toFixed(3));
+    if (of.weights) add("weight", (of.weights[i] / 255).toFixed(3));
+  }
+
+  // The colours of an error map and the values at their ends.
+  function drawScale() {
+    const view = state.view, end = view.scale === "fixed" ? 1 : 1 / (Math.pow(2, state.stops) * (view.scale === "share" ? 1 : scene.exposure));
+    bar.html("").style("display", view.scale ? null : "none");
+    if (!view.scale) return;
+    const both = view.ends === "both";
+    const colours = d3.range(17).map((k) => k / 16).map((t) => (view.grey ? [255 * t, 255 * t, 255 * t] : both ? signedColour(2 * t - 1) : magmaColour(t)));
+    bar.append("span").text(both ? `−${number(end)}` : "0");
+    bar.append("span").attr("class", "ramp").style("background", `linear-gradient(to right, ${colours.map((c) => `rgb(${c.map(Math.round).join()})`).join()})`);
+    bar.append("span").text(number(end));
+    bar.append("span").attr("class", "muted").text({ luminance: "difference of luminance, brighter than the reference in orange",
+      radiance: "absolute difference, mean of RGB", share: "absolute difference over the reference's luminance + 0.01 of white",
+      fixed: view.grey ? "weight of each pixel: 0 shares all, 1 is independent" : "LDR-FLIP as in errors.csv" }[view.scale]);
+  }
+
+  function drawCaption() {
+    const method = state.methods[state.at];
+    caption.html("");
+    caption.append("b").text(method.name);
+    const mapped = views.find((v) => v === state.view);
+    const lacks = (mapped.name === "weights" && !method.ids.weights) || (mapped.scale && method.reference);
+    const lines = lacks ? [`no ${mapped.title.toLowerCase()} of this one: its image is shown`, ...method.lines] : method.lines;
+    caption.selectAll("div").data(lines).enter().append("div").attr("class", "muted").text((d) => d);
+    if (method.command) caption.append("code").text(method.command);
+  }
+
+  function mark() {
+    tabs.selectAll("button").attr("aria-pressed", (d, i) => String(i === state.at));
+    viewSelect.property("value", state.view.name);
+    exposure.property("value", state.stops);
+    stops.text(`${state.stops > 0 ? "+" : ""}${state.stops} stops`);
+    drawScale();
+    drawCaption();
+  }
+  function refresh(cropsToo) {
+    mark();
+    draw();
+    if (cropsToo) crops.draw();
+  }
+  function choose(i) {
+    if (i < 0 || i >= state.methods.length) return false;
+    if (i !== state.at) state.before = state.at;
+    state.at = i;
+    refresh(false);
+    return true;
+  }
+  function look(view) {
+    state.view = view;
+    refresh(true);
+  }
+  function expose(stops) {
+    state.stops = Math.max(-8, Math.min(8, stops));
+    refresh(true);
+  }
+  // Zooms by a factor; the pixel at a place on the canvas stays where it is.
+  function zoomBy(factor, at) {
+    const before = corner();
+    const about = at || { x: canvas.clientWidth / 2, y: canvas.clientHeight / 2 };
+    const pixel = { x: (about.x - before.x) / before.z, y: (about.y - before.y) / before.z };
+    const z = Math.min(largestZoom, before.z * factor);
+    state.zoom = z <= fit() * 1.001 ? 0 : z;
+    state.x = pixel.x + (canvas.clientWidth / 2 - about.x) / z;
+    state.y = pixel.y + (canvas.clientHeight / 2 - about.y) / z;
+    canvas.style.touchAction = state.zoom ? "none" : "pan-y";
+    draw();
+  }
+  function showAll() {
+    state.zoom = 0;
+    canvas.style.touchAction = "pan-y";
+    draw();
+  }
+  function move(dx, dy) {
+    const place = corner();
+    // From where it stands, not from where it was asked to be.
+    state.x = (canvas.clientWidth / 2 - place.x - dx) / place.z;
+    state.y = (canvas.clientHeight / 2 - place.y - dy) / place.z;
+    draw();
+  }
+
+  function setMethods() {
+    const name = state.methods.length ? state.methods[state.at].name : null;
+    state.methods = methodsOf(scene, index, state.choice);
+    const same = state.methods.findIndex((m) => m.name === name);
+    state.at = same >= 0 ? same : Math.min(1, state.methods.length - 1);
+    state.before = 0;
+    tabs.html("");
+    const items = tabs.selectAll("button").data(state.methods).enter().append("button").attr({ type: "button", class: "chip" });
+    items.append("kbd").text((d, i) => (i < 10 ? (i + 1) % 10 : ""));
+    items.each(function (d) { if (!d.reference) sample(d3.select(this), d.series); });
+    items.append("span").text((d) => d.name);
+    items.on("click", (d, i) => choose(i));
+  }
+
+  const select = controls.append("label").text("Show ").append("select");
+  select.selectAll("option").data(choices).enter().append("option").attr("value", (d, i) => i).text((d) => d.text);
+  select.on("change", () => {
+    state.choice = choices[Number(select.property("value"))];
+    painted.clear();
+    setMethods();
+    refresh(true);
+  });
+  const offered = views.filter((v) => v.name !== "weights" || index.runs.some((run) => run.weights));
+  const viewSelect = controls.append("label").text("as ").append("select").attr("class", "view");
+  viewSelect.selectAll("option").data(offered).enter().append("option").attr("value", (v) => v.name).text((v) => v.title);
+  viewSelect.on("change", () => look(offered.find((v) => v.name === viewSelect.property("value"))));
+  const exposureLabel = controls.append("label").text("Exposure ");
+  const exposure = exposureLabel.append("input").attr({ type: "range", min: -8, max: 8, step: 0.5, value: 0 });
+  const stops = exposureLabel.append("output");
+  exposure.on("input", () => expose(Number(exposure.property("value"))));
+  const tools = controls.append("span").attr("class", "tools");
+  button(tools, "+", "Zoom in", () => zoomBy(2));
+  button(tools, "−", "Zoom out", () => zoomBy(0.5));
+  button(tools, "1:1", "One image pixel on one pixel of the page", () => zoomBy(1 / zoom()));
+  button(tools, "All", "Show all of the image", showAll);
+  button(tools, "Crop", "Add an enlarged crop of what is in the middle", () => crops.add(state.x, state.y));
+
+  const crops = imageCrops(section, scene, { state, width, height, picture, redraw: draw,
+    goTo: (x, y) => { state.zoom = Math.max(zoom(), 4 * fit()); state.x = x; state.y = y; canvas.style.touchAction = "none"; draw(); } });
+
+  // Pointers: one moves the image, two zoom it; any shows the values beneath.
+  const pointers = new Map();
+  canvas.addEventListener("pointerdown", (event) => {
+    pointers.set(event.pointerId, event);
+    activeViewer = viewer;
+    if (pointers.size === 1) state.cursor = pixelAt(event);
+    showValues();
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    const last = pointers.get(event.pointerId);
+    state.cursor = pixelAt(event);
+    if (!last) return void showValues();
+    canvas.setPointerCapture(event.pointerId);
+    const other = [...pointers.values()].find((p) => p.pointerId !== event.pointerId);
+    pointers.set(event.pointerId, event);
+    if (!other) return void (state.zoom ? move(event.clientX - last.clientX, event.clientY - last.clientY) : showValues());
+    const rect = canvas.getBoundingClientRect(), apart = (a) => Math.hypot(a.clientX - other.clientX, a.clientY - other.clientY);
+    zoomBy(apart(event) / Math.max(1, apart(last)),
+      { x: (event.clientX + other.clientX) / 2 - rect.left, y: (event.clientY + other.clientY) / 2 - rect.top });
+  });
+  ["pointerup", "pointercancel"].forEach((name) => canvas.addEventListener(name, (event) => pointers.delete(event.pointerId)));
+  canvas.addEventListener("pointerleave", (event) => {
+    if (event.pointerType !== "mouse" || pointers.size) return;
+    state.cursor = null;
+    showValues();
+  });
+  canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && document.activeElement !== canvas) return;
+    event.preventDefault();
+    const rect = canvas.getBoundingClientRect();
+    zoomBy(Math.pow(2, -Math.sign(event.deltaY) / 3), { x: event.clientX - rect.left, y: event.clientY - rect.top });
+  }, { passive: false });
+  box.node().addEventListener("focusin", () => { activeViewer = viewer; });
+
+  const actions = {
+    r: () => choose(state.at === 0 ? state.before : 0),
+    e: () => look(offered[(offered.indexOf(state.view) + 1) % offered.length]),
+    f: showAll,
+    "[": () => expose(state.stops - 1), "]": () => expose(state.stops + 1),
+    "+": () => zoomBy(2), "=": () => zoomBy(2), "-": () => zoomBy(0.5),
+    ArrowLeft: () => move(40, 0), ArrowRight: () => move(-40, 0), ArrowUp: () => move(0, 40), ArrowDown: () => move(0, -40),
+  };
+  const viewer = {
+    node: box.node(),
+    key(key) {
+      if (/^[0-9]$/.test(key)) return choose((Number(key) + 9) % 10);
+      const action = actions[key.length === 1 ? key.toLowerCase() : key];
+      if (action) action();
+      return Boolean(action);
+    },
+  };
+  viewers.push(viewer);
+
+  function shape() {
+    const room = canvas.clientWidth;
+    canvas.style.height = `${Math.round(Math.min(room * height / width, Math.max(300, 0.72 * window.innerHeight)))}px`;
+  }
+  // Decoded when it comes near the window, so that a page of many scenes opens at once.
+  const observer = new IntersectionObserver((entries) => {
+    if (!entries.some((entry) => entry.isIntersecting)) return;
+    observer.disconnect();
+    setMethods();
+    shape();
+    mark();
+    crops.chooseThree(index).then(() => refresh(true));
+    window.addEventListener("resize", () => { shape(); draw(); });
+  }, { rootMargin: "400px" });
+  observer.observe(box.node());
+}
