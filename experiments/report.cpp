@@ -8,11 +8,16 @@
 namespace lockstep {
 namespace {
 
-// JSON that may stand in a script element: no "</" ends it early.
+// JSON that may stand in a script element: without "<", nothing in it ends or hides that. File
+// names that are not UTF-8 lose the bytes that are not.
 std::string embeddable(const nlohmann::ordered_json& json) {
-  std::string text = json.dump();
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) {
-    text.replace(at, 2, "<\\/");
+  using Json = nlohmann::ordered_json;
+  std::string text;
+  for (char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/half.h"
 #include "experiments/flip.h"
+#include "experiments/metrics.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
@@ -97,10 +98,15 @@ double seconds_of(const Json& scene, const RunImages& files) {
   return 0.0;
 }
 
-// The longest CPU time that all samplers have in common.
+// The longest CPU time that was measured for every sampler.
 std::optional<double> longest_budget(const Json& scene) {
   std::optional<double> longest;
   for (const Json& budget : scene["equal_time"]["budgets"]) {
+    const Json& samplers = budget["samplers"];
+    const bool all = std::all_of(samplers.begin(), samplers.end(), [](const Json& entry) {
+      return entry.contains(metrics()[0].name);
+    });
+    if (!all) continue;
     const double seconds = budget["cpu_seconds"];
     longest = std::max(longest.value_or(seconds), seconds);
   }

@@ -2,7 +2,7 @@
 // methods side by side.
 
 const cropColours = ["#ffb000", "#00c2d1", "#ff5fa2", "#8ed100", "#b28dff", "#ff7a3d"];
-const cropZoomWidth = 176;  // CSS pixels of a crop on the page
+const cropWidths = [110, 230];  // least and most CSS pixels of a crop on the page
 
 // Places where the methods differ most: blocks whose mean FLIP spreads farthest, apart from each other.
 function differingBlocks(maps, width, height, size, count) {
@@ -42,9 +42,12 @@ function imageCrops(section, scene, viewer) {
     const methods = viewer.state.methods;
     const pictures = await Promise.all(methods.map(viewer.picture));
     if (methods !== viewer.state.methods) return;
+    const room = box.node().clientWidth / methods.length - 8;
+    const shownWidth = Math.floor(Math.max(cropWidths[0], Math.min(cropWidths[1], room)));
     box.html("");
     const table = box.append("table");
-    table.append("thead").append("tr").selectAll("th").data(methods).enter().append("th").attr("scope", "col").text((m) => m.name);
+    table.append("thead").append("tr").selectAll("th").data(methods).enter().append("th").attr("scope", "col").text((m) => m.name)
+      .style("max-width", `${shownWidth}px`);
     const rows = table.append("tbody").selectAll("tr").data(places).enter().append("tr");
     rows.each(function (place, k) {
       const row = d3.select(this);
@@ -52,7 +55,7 @@ function imageCrops(section, scene, viewer) {
         const cell = row.append("td");
         const canvas = cell.append("canvas").attr({ width: size.width, height: size.height, role: "img",
           "aria-label": `crop ${k + 1} of ${methods[i].name}` })
-          .style({ width: `${cropZoomWidth}px`, "border-color": cropColours[k % cropColours.length] });
+          .style({ width: `${shownWidth}px`, "border-color": cropColours[k % cropColours.length] });
         canvas.node().getContext("2d").drawImage(picture, -place.x, -place.y);
         canvas.on("click", () => viewer.goTo(place.x + size.width / 2, place.y + size.height / 2));
         if (i === 0) button(cell, "×", `Remove crop ${k + 1}`, () => remove(k)).attr("class", "remove");

@@ -59,6 +59,7 @@ function settings() {
     "included, loading the scene is not. Every point is a render of its own; samplers took turns, so that a " +
     "disturbance of the machine falls on all alike.");
   if (summary.command) terminalText(section, "This comparison", summary.command);
+  if (summary.experiment) terminalText(section, "The same as a file for lockstep compare", summary.experiment);
   const spp = summary.spp[summary.spp.length - 1];
   terminalText(section, `Single images, here the first seed's at ${spp} samples per pixel`, [].concat(...summary.scenes.map((scene) =>
     scene.samplers.map((s) => renderCommand(scene, s.sampler, spp)))).join("\n"));

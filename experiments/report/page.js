@@ -35,6 +35,7 @@ function sceneSection(scene, k) {
   if (imageIndex[k]) imageViewer(section, scene, imageIndex[k]);
   spectrumPlots(section, scene);
   equalTime(section, scene);
+  timeToError(section, scene);
   notes(section, scene);
 }
 

@@ -83,8 +83,34 @@ function equalTime(section, scene) {
   });
 }
 
-const longestBudget = (scene) => scene.equal_time.budgets.reduce(
-  (longest, budget) => (!longest || budget.cpu_seconds > longest.cpu_seconds ? budget : longest), null);
+// CPU time that each sampler needs to reach an error, and its ratio to the first one's.
+function timeToError(section, scene) {
+  const targets = scene.time_to_error || [];
+  if (!targets.length) return;
+  section.append("h3").text("CPU time to reach an error");
+  section.append("p").attr("class", "muted").text(
+    `Read between the measured points of the median errors, and ratio to ${scene.samplers[0].sampler} with its 95 % interval.`);
+  const table = section.append("div").attr("class", "table").append("table");
+  drawNowAndLater(() => {
+    table.html("");
+    columnHeads(table, "Sampler", targets.map((t) => `${heading(summary.metrics.find((m) => m.name === t.metric))} ${number(t.error)}`), -1);
+    const body = table.append("tbody");
+    samplerNames.forEach((name, i) => {
+      if (!shown(i)) return;
+      const row = body.append("tr");
+      samplerCell(row, i, name);
+      targets.forEach(({ samplers }) => {
+        const seconds = samplers[i].cpu_seconds, fastest = d3.min(samplers, (s) => s.cpu_seconds || Infinity);
+        errorCell(row, seconds && { median: seconds, ratio: samplers[i].ratio }, i === 0, seconds === fastest);
+      });
+    });
+  });
+}
+
+// The longest time that was measured for every sampler.
+const longestBudget = (scene) => scene.equal_time.budgets
+  .filter((budget) => budget.samplers.every((entry) => entry[summary.metrics[0].name]))
+  .reduce((longest, budget) => (!longest || budget.cpu_seconds > longest.cpu_seconds ? budget : longest), null);
 
 // Of several scenes: the chosen metric, a column for each, and the geometric mean of the ratios.
 function scenesTable(table, scenes) {
@@ -106,7 +132,7 @@ function scenesTable(table, scenes) {
 
 // What came out, before everything else: at the longest time that all samplers have in common.
 function overview() {
-  const scenes = summary.scenes.filter((scene) => scene.equal_time.budgets.length);
+  const scenes = summary.scenes.filter(longestBudget);
   if (!scenes.length) return;
   const several = scenes.length > 1;
   const caption = page.append("p").attr("class", "muted");

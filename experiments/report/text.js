@@ -13,7 +13,7 @@ function number(v) {
 const seconds = (v) => `${number(v)} s`;
 
 // For a closer look: six digits, as a CSV file would write them.
-const exact = (v) => String(Number(v.toPrecision(6)));
+const exact = (v) => (typeof v === "number" ? String(Number(v.toPrecision(6))) : "not finite");
 
 // Ratios: two decimals, or two digits where they are small.
 const ratio = (v) => (v >= 0.1 ? v.toFixed(2) : String(Number(v.toPrecision(2))));

@@ -133,9 +133,8 @@ function imageViewer(section, scene, index) {
     const method = state.methods[state.at];
     caption.html("");
     caption.append("b").text(method.name);
-    const mapped = views.find((v) => v === state.view);
-    const lacks = (mapped.name === "weights" && !method.ids.weights) || (mapped.scale && method.reference);
-    const lines = lacks ? [`no ${mapped.title.toLowerCase()} of this one: its image is shown`, ...method.lines] : method.lines;
+    const lacks = (state.view.name === "weights" && !method.ids.weights) || (state.view.scale && method.reference);
+    const lines = lacks ? [`no ${state.view.title.toLowerCase()} of this one: its image is shown`, ...method.lines] : method.lines;
     caption.selectAll("div").data(lines).enter().append("div").attr("class", "muted").text((d) => d);
     if (method.command) caption.append("code").text(method.command);
   }
@@ -193,6 +192,11 @@ function imageViewer(section, scene, index) {
     draw();
   }
 
+  async function savePicture() {
+    const method = state.methods[state.at], image = await picture(method);
+    image.toBlob((blob) => save(`${fileNameSafe(`${scene.label}-${method.name}-${state.view.name}`)}.png`, blob));
+  }
+
   function setMethods() {
     const name = state.methods.length ? state.methods[state.at].name : null;
     state.methods = methodsOf(scene, index, state.choice);
@@ -228,6 +232,7 @@ function imageViewer(section, scene, index) {
   button(tools, "−", "Zoom out", () => zoomBy(0.5));
   button(tools, "1:1", "One image pixel on one pixel of the page", () => zoomBy(1 / zoom()));
   button(tools, "All", "Show all of the image", showAll);
+  button(tools, "PNG", "Save the image as it is shown, whole and pixel by pixel", savePicture);
   button(tools, "Crop", "Add an enlarged crop of what is in the middle", () => crops.add(state.x, state.y));
 
   const crops = imageCrops(section, scene, { state, width, height, picture, redraw: draw,

@@ -27,7 +27,7 @@ fi
 
 # A scene whose name is markup: the page must show it as text. Made-up triangles, seen from afar.
 rm -rf page && mkdir page || exit 1
-scene='page/<img src=x onerror=alert(1)>&amp;.ply'
+scene='page/<!--<script><img src=x onerror=alert(1)>&amp;.ply'
 cat >"$scene" <<'PLY'
 ply
 format ascii 1.0
