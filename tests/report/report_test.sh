@@ -13,7 +13,7 @@ skip() {
 }
 
 for tool in chromium node npm; do
-  command -v "$tool" >/dev/null || skip "$tool is not installed (see packages.txt)"
+  command -v "$tool" >/dev/null || skip "$tool is not installed (see tests/packages.txt)"
 done
 
 mkdir -p "$work" && cd "$work" || exit 1
