@@ -155,6 +155,7 @@ const std::vector<ExperimentKey>& experiment_keys() {
       {"quiet", Kind::Switch},
       {"camera", Kind::Text},
       {"environment", Kind::Text},
+      {"environment_up", Kind::Text},
       {"environment_scale", Kind::Number},
       {"compensate", Kind::Switch},
       {"roulette_depth", Kind::Number},
