@@ -1,5 +1,5 @@
-// Coincident triangles in three steps: a key per plane, buckets that bring triangles of equal keys
-// together, and a search for overlaps in each group of equal keys, in the plane.
+// Coincident triangles in three steps: keys of planes and places in them, buckets that bring
+// triangles of equal keys together, and a search for overlaps in each group of equal keys.
 #include "core/coincidence.h"
 
 #include "core/coincidence/overlap_search.h"
@@ -11,9 +11,8 @@
 #include <algorithm>
 
 namespace lockstep {
+namespace coincidence {
 namespace {
-
-using namespace coincidence;
 
 // Threads take so many triangles at a time.
 constexpr std::size_t kShare = 1 << 13;
@@ -37,16 +36,10 @@ void search_groups(std::span<const Entry> entries, OverlapSearch& search) {
   }
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> find_coincident_triangles(const float* positions,
-                                                    const std::int32_t* triangles,
-                                                    std::size_t count) {
-  const UnitMesh mesh = unit_mesh(positions, triangles, count);
-  if (mesh.scale == 0.0) return {};
+// Empty where no triangle overlaps another one.
+std::vector<std::uint8_t> overlap_flags(const UnitMesh& mesh) {
   const Buckets buckets = bucketed_planes(mesh);
-
-  std::vector<std::uint8_t> flags(count);
+  std::vector<std::uint8_t> flags(mesh.count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, buckets.size()), [&](const auto& range) {
     OverlapSearch search(mesh, flags);
     std::vector<Entry> sorted;
@@ -57,6 +50,17 @@ std::vector<std::uint8_t> find_coincident_triangles(const float* positions,
   });
   if (std::find(flags.begin(), flags.end(), 1) == flags.end()) flags.clear();
   return flags;
+}
+
+}  // namespace
+}  // namespace coincidence
+
+std::vector<std::uint8_t> find_coincident_triangles(const float* positions,
+                                                    const std::int32_t* triangles,
+                                                    std::size_t count) {
+  const coincidence::UnitMesh mesh = coincidence::unit_mesh(positions, triangles, count);
+  if (mesh.scale == 0.0) return {};
+  return coincidence::overlap_flags(mesh);
 }
 
 }  // namespace lockstep

@@ -122,8 +122,8 @@ struct Scene::Storage {
   std::uint64_t fingerprint = 0;
 
   void find_coincident() {
-    flat.coincident = find_coincident_triangles(flat.positions.data(), flat.triangles.data(),
-                                                triangle_count());
+    flat.coincident =
+        find_coincident_triangles(flat.positions.data(), flat.triangles.data(), triangle_count());
   }
 
   std::uint64_t fingerprint_of_all() const {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <random>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -122,6 +123,86 @@ TEST_F(Mitsuba, MeshFilesAndTheirNormals) {
   expect_one_line_with(
       error_of("<shape type=\"ply\"><string name=\"filename\" value=\"b.ply\"/></shape>"),
       "scene.xml:2: b.ply: ");
+}
+
+std::string obj_shape(const std::string& file, const std::string& parameters = "") {
+  return "<shape type=\"obj\"><string name=\"filename\" value=\"" + file + "\"/>" + parameters +
+         "</shape>\n";
+}
+
+TEST_F(Mitsuba, MeshFilesStayInTheOrderOfTheirShapes) {
+  std::string text;
+  std::string group = "<shape type=\"shapegroup\" id=\"g\">\n";
+  for (int i = 0; i < 60; ++i) {
+    const std::string file = std::to_string(i) + ".obj";
+    write(file, "v 0 0 0\nv 1 0 0\nv 0 1 " + std::to_string(i) + "\nf 1 2 3\n");
+    (i % 10 == 3 ? group : text) += obj_shape(file);
+    if (i % 10 == 5) text += "<shape type=\"sphere\"/>\n";
+    if (i % 10 == 8) text += "<shape type=\"merge\">" + obj_shape(file) + "</shape>\n";
+  }
+  const std::string instance = "<shape type=\"instance\"><ref id=\"g\"/></shape>\n";
+  const SceneDescription scene = read(group + "</shape>\n" + text + instance + instance);
+  ASSERT_EQ(scene.warnings, std::vector<std::string>{});
+  std::vector<float> expected, found, of_group;
+  for (int i = 0; i < 60; ++i) {
+    if (i % 10 != 3) expected.push_back(float(i));
+    if (i % 10 == 5) expected.push_back(-1.0f);
+    if (i % 10 == 8) expected.push_back(float(i));
+  }
+  const auto last_z = [](const Shape& shape) {
+    const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+    return mesh != nullptr ? mesh->positions.at(2).z : -1.0f;
+  };
+  for (const Shape& shape : scene.shapes) found.push_back(last_z(shape));
+  EXPECT_EQ(found, expected);
+  ASSERT_EQ(scene.objects.size(), 1u);
+  for (const Shape& shape : scene.objects[0].shapes) of_group.push_back(last_z(shape));
+  EXPECT_EQ(of_group, (std::vector<float>{3, 13, 23, 33, 43, 53}));
+}
+
+// The first by its place in the scene, however soon a file or the scene itself proves bad.
+TEST_F(Mitsuba, TheFirstOfSeveralErrorsIsTold) {
+  std::string points;
+  for (int i = 0; i < 50000; ++i) points += "v 1 2 3\n";
+  write("good.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("late.obj", points + "f 1 2 50001\n");
+  write("bad.obj", "f 1 2 3\n");
+  const std::string good = obj_shape("good.obj"), late = obj_shape("late.obj");
+  const std::string bad = obj_shape("bad.obj");
+  const std::string nowhere = "<shape type=\"sphere\"><ref id=\"nowhere\"/></shape>\n";
+  const std::string of_late = "scene.xml:4: late.obj:50001: ";
+  const std::pair<std::string, std::string> cases[] = {
+      {good + good + late + good + bad + bad, of_late},
+      {good + good + late + nowhere, of_late},
+      {good + good + late + obj_shape("absent.obj"), of_late},
+      {good + nowhere + bad + late, "scene.xml:3: there is no object"},
+      {good + good + obj_shape("bad.obj", "<ref id=\"nowhere\"/>") + late,
+       "scene.xml:4: there is no object"},
+      {good + obj_shape("good.obj", "<float name=\"flip_tex_coords\" value=\"1\"/>") + bad,
+       "scene.xml:3: "},
+  };
+  for (const auto& [text, message] : cases) expect_one_line_with(error_of(text), message);
+}
+
+TEST_F(Mitsuba, MeshFilesOfShapesThatAreLeftOutMayBeBad) {
+  write("good.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const SceneDescription scene =
+      read(obj_shape("good.obj") + obj_shape("absent.obj", "<bsdf type=\"null\"/>") +
+           "<shape type=\"shapegroup\">" + obj_shape("absent.obj") + "</shape>");
+  EXPECT_EQ(scene.shapes.size(), 1u);
+}
+
+TEST_F(Mitsuba, WhatMeshFilesDoNotUnderstandIsTold) {
+  write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string known =
+      "<boolean name=\"faceNormals\" value=\"true\"/>"
+      "<boolean name=\"flip_tex_coords\" value=\"true\"/>"
+      "<float name=\"maxSmoothAngle\" value=\"30\"/><boolean name=\"collapse\" value=\"true\"/>";
+  EXPECT_TRUE(read(obj_shape("a.obj", known)).warnings.empty());
+  const std::string unknown = "<integer name=\"shape_index\" value=\"0\"/>";
+  const SceneDescription scene = read(obj_shape("a.obj", known + unknown));
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("\"shape_index\""), std::string::npos);
 }
 
 TEST_F(Mitsuba, ObjFilesBringTheirOwnMaterials) {

@@ -4,6 +4,7 @@
 #include "core/ply.h"
 #include "core/serialized_mesh.h"
 
+#include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -116,13 +117,7 @@ auto read_file(const Properties& set, const Reader& read) {
   }
 }
 
-}  // namespace
-
-bool is_mesh_file(const std::string& type) {
-  return type == "obj" || type == "ply" || type == "serialized";
-}
-
-TriangleMesh read_mesh_file(State& state, const Properties& set) {
+TriangleMesh mesh_of(const State& state, const Properties& set) {
   const std::string file = file_of(state, set);
   TriangleMesh mesh;
   bool flat = false;
@@ -141,6 +136,42 @@ TriangleMesh read_mesh_file(State& state, const Properties& set) {
   }
   finish_normals(set, mesh, flat);
   return mesh;
+}
+
+// Marks what mesh_of() looks at.
+void ignore_parameters_of_mesh(const Properties& set) {
+  set.ignore({"filename", "srgb", "collapse", "face_normals", "max_smooth_angle",
+              set.type() == "serialized" ? "shape_index" : "flip_tex_coords"});
+}
+
+}  // namespace
+
+bool is_mesh_file(const std::string& type) {
+  return type == "obj" || type == "ply" || type == "serialized";
+}
+
+TriangleMesh read_mesh_file(State& state, const Properties& set) {
+  const auto ahead = state.meshes_ahead.extract(set.element().node);
+  if (!ahead) return mesh_of(state, set);
+  if (const auto* error = std::get_if<std::exception_ptr>(&ahead.mapped())) {
+    std::rethrow_exception(*error);
+  }
+  ignore_parameters_of_mesh(set);
+  return std::get<TriangleMesh>(std::move(ahead.mapped()));
+}
+
+void read_meshes_ahead(State& state, const std::vector<Element>& shapes) {
+  std::vector<std::variant<TriangleMesh, std::exception_ptr>> meshes(shapes.size());
+  tbb::parallel_for(std::size_t{0}, shapes.size(), [&](std::size_t i) {
+    try {
+      meshes[i] = mesh_of(state, state.properties(shapes[i]));
+    } catch (...) {
+      meshes[i] = std::current_exception();
+    }
+  });
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    state.meshes_ahead.emplace(shapes[i].node, std::move(meshes[i]));
+  }
 }
 
 ObjFile read_obj_file(State& state, const Properties& set) {

@@ -13,7 +13,12 @@ bool is_mesh_file(const std::string& type);
 
 // The mesh of an obj, ply or serialized shape. As Mitsuba does, smooth normals are made where the
 // file has none, unless "face_normals"; "max_smooth_angle" keeps them from crossing sharper edges.
+// One that was read ahead is handed out, or its error thrown, here.
 TriangleMesh read_mesh_file(State& state, const Properties& set);
+
+// Reads the mesh files of these shapes, several at a time, for read_mesh_file() to hand out. Errors
+// wait for it, too: the first in the file is the one that is reported.
+void read_meshes_ahead(State& state, const std::vector<Element>& shapes);
 
 // An obj shape by material, for files that bring their own.
 ObjFile read_obj_file(State& state, const Properties& set);

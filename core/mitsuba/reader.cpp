@@ -54,6 +54,7 @@ SceneDescription read_mitsuba(const std::string& path) {
   state.sources = mitsuba::read_sources(path, state.warnings);
   bool has_sensor = false;
   const std::vector<mitsuba::Element> top_level = state.sources.top_level;
+  mitsuba::read_shapes_ahead(state, top_level);
   for (const mitsuba::Element& element : top_level) {
     mitsuba::read_object(state, element, has_sensor);
   }

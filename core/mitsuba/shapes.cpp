@@ -287,7 +287,31 @@ void add_to(State& state, const Element& element, Target& target) {
   if (geometry) append(state, set, target, Shape{std::move(*geometry), *material, emission});
 }
 
+// The shape, or those inside it, whose mesh files need nothing but their own parameters. What is
+// wrong with a shape is left for add_shape() to tell.
+void collect_mesh_files(const State& state, const Element& element, std::vector<Element>& found) {
+  const std::string type = plain(element.attribute("type"));
+  if (type == "shapegroup" || type == "merge") {
+    for (const Element& child : element.children()) {
+      if (child.tag() == "shape") collect_mesh_files(state, child, found);
+    }
+  } else if (is_mesh_file(type)) {
+    try {
+      if (!has_own_materials(state, state.properties(element))) found.push_back(element);
+    } catch (const Error&) {
+    }
+  }
+}
+
 }  // namespace
+
+void read_shapes_ahead(State& state, const std::vector<Element>& elements) {
+  std::vector<Element> found;
+  for (const Element& element : elements) {
+    if (element.tag() == "shape") collect_mesh_files(state, element, found);
+  }
+  read_meshes_ahead(state, found);
+}
 
 void add_shape(State& state, const Element& element) {
   Target target{state.scene.shapes};

@@ -5,9 +5,11 @@
 #include "core/mitsuba/properties.h"
 #include "core/scene_description.h"
 
+#include <exception>
 #include <map>
 #include <optional>
 #include <utility>
+#include <variant>
 
 namespace lockstep::mitsuba {
 
@@ -26,6 +28,8 @@ struct State {
   std::map<pugi::xml_node, TextureInput> textures;
   std::map<std::pair<pugi::xml_node, bool>, std::optional<int>> materials;
   std::map<pugi::xml_node, int> groups;  // of shapes: index of SceneDescription::objects
+  // By tag: mesh files that were read ahead and not yet asked for, or why they could not be read.
+  std::map<pugi::xml_node, std::variant<TriangleMesh, std::exception_ptr>> meshes_ahead;
   int nesting = 0;
 
   Properties properties(const Element& element) const { return {sources, element}; }
