@@ -12,9 +12,9 @@ namespace {
 
 // 2^-m, for 4^m samples or more: the first 4^m points of a (0, 2)-sequence fill cells of that side.
 float cell_side(std::uint32_t samples) {
-  float side = 1.0f;
-  for (; samples >= 4; samples /= 4) side *= 0.5f;
-  return side;
+  float width = 1.0f;
+  for (; samples >= 4; samples /= 4) width *= 0.5f;
+  return width;
 }
 
 }  // namespace
