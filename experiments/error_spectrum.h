@@ -23,8 +23,8 @@ struct ErrorSpectrum {
 // mean of the error is removed first, and frequency zero belongs to no ring.
 // The power at a frequency is |F|^2 / pixels, with F = sum of error * exp(-2 pi i f x): its sum
 // over all frequencies is the error's sum of squares (Parseval), and white noise of variance v has
-// v in every ring. Which rings there are depends on the images' size alone. Fast where the sides
-// have no prime factors above 5; two prime sides of a thousand pixels take seconds.
+// v in every ring. Which rings there are depends on the images' size alone. Sides with a prime
+// factor above 127 lose the few last pixels that make it so: transforming them would take minutes.
 ErrorSpectrum error_spectrum(const Image& reference, const Image& test, int bins = 32);
 
 // Makes `next` part of `mean`, the mean spectrum of `count` images with it. An empty `mean` (count

@@ -13,9 +13,9 @@ namespace {
 
 // What is evaluated, and where the result goes.
 struct Task {
+  const PreparedReference& prepared;
   const Image& reference;
   const Image& test;
-  const MetricSettings& settings;
   Evaluation& result;
 };
 
@@ -31,7 +31,9 @@ void append_value(Task& task) {
 }
 
 void append_yee(Task& task) {
-  YeeDifference difference = yee_difference(task.reference, task.test, task.settings.yee);
+  const YeeSettings& settings = task.prepared.settings.yee;
+  YeeDifference difference =
+      yee_difference(task.prepared.yee, yee_view(task.test, settings), settings);
   const double pixels = double(task.reference.width) * double(task.reference.height);
   task.result.values.push_back(double(difference.pixels));
   task.result.values.push_back(double(difference.pixels) / pixels);
@@ -39,13 +41,13 @@ void append_yee(Task& task) {
 }
 
 void append_flip_ldr(Task& task) {
-  task.result.flip_ldr = flip_ldr_map(task.reference, task.test, task.settings.pixels_per_degree);
+  task.result.flip_ldr = task.prepared.flip.ldr_map(task.test);
   task.result.values.push_back(mean_of(task.result.flip_ldr));
 }
 
 void append_flip_hdr(Task& task) {
-  task.result.flip_hdr = flip_hdr_map(task.reference, task.test, task.settings.pixels_per_degree);
-  task.result.values.push_back(mean_of(task.result.flip_hdr));
+  task.result.flip_hdr = task.prepared.flip.hdr_map(task.test);
+  task.result.values.push_back(mean_of(task.result.flip_hdr.map));
 }
 
 const std::vector<Evaluator>& evaluators() {
@@ -87,6 +89,18 @@ void check_colour(const Image& image, std::string_view name) {
   check_finite(image, name);
 }
 
+void check_sizes(const Image& reference, const Image& test, std::string_view reference_name,
+                 std::string_view test_name) {
+  if (reference.width == test.width && reference.height == test.height &&
+      reference.channels == test.channels) {
+    return;
+  }
+  throw Error(
+      fmt::format("{} is {}x{} with {} channels, {} is {}x{} with {}; compare images of one size",
+                  reference_name, reference.width, reference.height, reference.channels, test_name,
+                  test.width, test.height, test.channels));
+}
+
 }  // namespace
 
 const std::vector<Metric>& metrics() {
@@ -100,21 +114,28 @@ const std::vector<Metric>& metrics() {
   return table;
 }
 
-Evaluation evaluate(const Image& reference, const Image& test, const MetricSettings& settings,
-                    std::string_view reference_name, std::string_view test_name) {
-  if (reference.width != test.width || reference.height != test.height ||
-      reference.channels != test.channels) {
-    throw Error(
-        fmt::format("{} is {}x{} with {} channels, {} is {}x{} with {}; compare images of one size",
-                    reference_name, reference.width, reference.height, reference.channels,
-                    test_name, test.width, test.height, test.channels));
-  }
-  check_colour(reference, reference_name);
+PreparedReference prepare_reference(const Image& reference, const MetricSettings& settings,
+                                    std::string_view name, std::size_t flip_bytes) {
+  check_colour(reference, name);
+  return {&reference, std::string(name), settings,
+          FlipReference(reference, settings.pixels_per_degree, flip_bytes),
+          yee_view(reference, settings.yee)};
+}
+
+Evaluation evaluate(const PreparedReference& prepared, const Image& test,
+                    std::string_view test_name) {
+  check_sizes(*prepared.image, test, prepared.name, test_name);
   check_colour(test, test_name);
   Evaluation result;
-  Task task{reference, test, settings, result};
+  Task task{prepared, *prepared.image, test, result};
   for (const Evaluator& evaluator : evaluators()) evaluator.append(task);
   return result;
+}
+
+Evaluation evaluate(const Image& reference, const Image& test, const MetricSettings& settings,
+                    std::string_view reference_name, std::string_view test_name) {
+  check_sizes(reference, test, reference_name, test_name);
+  return evaluate(prepare_reference(reference, settings, reference_name, 0), test, test_name);
 }
 
 std::vector<double> evaluate_metrics(const Image& reference, const Image& test,

@@ -1,6 +1,8 @@
 // lockstep metrics: how far one image is from another.
+#include "experiments/block_error.h"
 #include "experiments/commands.h"
 #include "experiments/display_image.h"
+#include "experiments/error_spectrum.h"
 #include "experiments/metrics.h"
 #include "experiments/options.h"
 #include "experiments/output_file.h"
@@ -10,6 +12,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -23,7 +26,7 @@ struct MetricsOptions {
 std::string table_help() {
   std::string text = "Metrics (lower is better unless said otherwise):\n";
   for (const Metric& metric : metrics()) {
-    text += fmt::format("  {:16} {}{}{}\n", metric.name, metric.title,
+    text += fmt::format("  {:19} {}{}{}\n", metric.name, metric.title,
                         metric.unit.empty() ? "" : fmt::format(", in units of {}", metric.unit),
                         metric.lower_is_better ? "" : " (higher is better)");
   }
@@ -36,7 +39,17 @@ std::string table_help() {
          "of\n"
          "several exposures chosen from the reference. Yee's metric is perceptualdiff's.\n"
          "\n"
-         "--maps writes flip_ldr.png and flip_hdr.png (black 0 to cream 1), yee.png (white: "
+         "luminance_ratio is the mean luminance of TEST over that of REFERENCE, "
+         "block_relative_rmse "
+         "the\n"
+         "RMSE of the luminance of blocks of 16x16 pixels relative to the reference's: what is not "
+         "noise.\n"
+         "--json adds the power spectrum of the error over frequency, and that of white noise as "
+         "strong.\n"
+         "\n"
+         "--maps writes flip_ldr.png and flip_hdr.png (black 0 to cream 1), flip_hdr_exposure.png "
+         "(where\n"
+         "HDR-FLIP is largest: purple at the first exposure, yellow at the last), yee.png (red: "
          "visibly\n"
          "different) and error.exr (test - reference).\n"
          "\nExample:\n  lockstep metrics reference.exr test.exr --json --maps out/maps";
@@ -48,10 +61,10 @@ Image error_of(const Image& reference, const Image& test) {
   return error;
 }
 
-// A one-channel map of zeros and ones as black and white.
-Image black_and_white(const Image& map) {
+// A one-channel map of zeros and ones as black and red: perceptualdiff's colours.
+Image black_and_red(const Image& map) {
   Image image(map.width, map.height, 3);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = map.pixels[i / 3];
+  for (std::size_t i = 0; i < map.pixels.size(); ++i) image.pixels[3 * i] = map.pixels[i];
   return image;
 }
 
@@ -60,9 +73,21 @@ void write_maps(const std::string& directory, const Evaluation& evaluation, cons
     return (std::filesystem::path(directory) / file).string();
   };
   write_image(path("flip_ldr.png"), magma(evaluation.flip_ldr));
-  write_image(path("flip_hdr.png"), magma(evaluation.flip_hdr));
-  write_image(path("yee.png"), black_and_white(evaluation.yee_failing));
+  write_image(path("flip_hdr.png"), magma(evaluation.flip_hdr.map));
+  write_image(path("flip_hdr_exposure.png"), viridis(evaluation.flip_hdr.exposure));
+  write_image(path("yee.png"), black_and_red(evaluation.yee_failing));
   write_image(path("error.exr"), error);
+}
+
+nlohmann::ordered_json spectrum_json(const ErrorSpectrum& spectrum) {
+  nlohmann::ordered_json json = {{"frequency", nlohmann::ordered_json::array()},
+                                 {"power", nlohmann::ordered_json::array()},
+                                 {"white", spectrum.white}};
+  for (const SpectrumRing& ring : spectrum.rings) {
+    json["frequency"].push_back(ring.frequency);
+    json["power"].push_back(ring.power);
+  }
+  return json;
 }
 
 void run_metrics(const MetricsOptions& options) {
@@ -72,13 +97,20 @@ void run_metrics(const MetricsOptions& options) {
   const Evaluation evaluation =
       evaluate(reference, test, options.settings, options.reference, options.test);
   if (!options.maps.empty()) write_maps(options.maps, evaluation, error_of(reference, test));
-  nlohmann::ordered_json json;
+  std::vector<std::pair<std::string, double>> values;
   for (std::size_t i = 0; i < evaluation.values.size(); ++i) {
-    const Metric& metric = metrics()[i];
-    json[std::string(metric.name)] = evaluation.values[i];
-    if (!options.json) fmt::print("{:16} {:.9g}\n", metric.name, evaluation.values[i]);
+    values.emplace_back(metrics()[i].name, evaluation.values[i]);
   }
-  if (options.json) fmt::print("{}\n", json.dump(2));
+  values.emplace_back("block_relative_rmse", block_relative_rmse(reference, test));
+  values.emplace_back("luminance_ratio", luminance_ratio(reference, test));
+  if (options.json) {
+    nlohmann::ordered_json json;
+    for (const auto& [name, value] : values) json[name] = value;
+    json["spectrum"] = spectrum_json(error_spectrum(reference, test));
+    fmt::print("{}\n", json.dump(2));
+    return;
+  }
+  for (const auto& [name, value] : values) fmt::print("{:19} {:.9g}\n", name, value);
 }
 
 void add_viewing_options(CLI::App& command, MetricSettings& settings) {

@@ -1,5 +1,7 @@
 #include "experiments/separable_filter.h"
 
+#include "experiments/vector_clones.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,17 +11,16 @@ namespace lockstep {
 namespace {
 
 constexpr int kStripRows = 64;  // filtered in both directions while they are in the cache
-constexpr int kBlock = 16;      // sums kept in registers
+constexpr int kBlock = 32;      // sums kept in registers
 
-// sums[i] = sum over k of weights[k] * values[i + k * step].
-void weighted_sums(float* __restrict sums, const float* __restrict values, std::ptrdiff_t step,
-                   const std::vector<float>& weights, int count) {
-  const std::ptrdiff_t taps = std::ptrdiff_t(weights.size());
+LOCKSTEP_VECTOR_CLONES
+void sums_of(float* __restrict sums, const float* __restrict values, std::ptrdiff_t step,
+             const float* __restrict weights, std::ptrdiff_t taps, int count) {
   int i = 0;
   for (; i + kBlock <= count; i += kBlock) {
     float block[kBlock] = {};
     for (std::ptrdiff_t k = 0; k < taps; ++k) {
-      const float weight = weights[std::size_t(k)];
+      const float weight = weights[k];
       const float* from = values + i + k * step;
       for (int j = 0; j < kBlock; ++j) block[j] += weight * from[j];
     }
@@ -27,7 +28,7 @@ void weighted_sums(float* __restrict sums, const float* __restrict values, std::
   }
   for (; i < count; ++i) {
     float sum = 0.0f;
-    for (std::ptrdiff_t k = 0; k < taps; ++k) sum += weights[std::size_t(k)] * values[i + k * step];
+    for (std::ptrdiff_t k = 0; k < taps; ++k) sum += weights[k] * values[i + k * step];
     sums[i] = sum;
   }
 }
@@ -64,6 +65,11 @@ void filter_strip(const Image& image, const Filter& filter, int begin, int end, 
 }
 
 }  // namespace
+
+void weighted_sums(float* sums, const float* values, std::ptrdiff_t step,
+                   const std::vector<float>& weights, int count) {
+  sums_of(sums, values, step, weights.data(), std::ptrdiff_t(weights.size()), count);
+}
 
 std::vector<float> gaussian_weights(float sigma, int radius) {
   std::vector<float> weights;

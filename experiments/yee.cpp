@@ -1,6 +1,8 @@
 #include "experiments/yee.h"
 
 #include "experiments/display_image.h"
+#include "experiments/fast_power.h"
+#include "experiments/vector_clones.h"
 
 #include <tbb/parallel_for.h>
 #include <glm/vec2.hpp>
@@ -22,21 +24,33 @@ constexpr float kScotopic = 10.0f;  // cd/m^2, below which colours are not told 
 constexpr float kMostMasking = 10.0f;
 
 // Adobe RGB (1998) with white D65: the primaries that perceptualdiff takes images to have.
-glm::vec3 xyz_from_adobe(const glm::vec3& rgb) {
+inline glm::vec3 xyz_from_adobe(const glm::vec3& rgb) {
   return {0.576700f * rgb.x + 0.185556f * rgb.y + 0.188212f * rgb.z,
           0.297361f * rgb.x + 0.627355f * rgb.y + 0.0752847f * rgb.z,
           0.0270328f * rgb.x + 0.0706879f * rgb.y + 0.991248f * rgb.z};
 }
 
-float lab_curve(float share) {
+inline float lab_curve(float share) {
   constexpr float knee = 216.0f / 24389.0f, slope = 24389.0f / 27.0f;
-  return share > knee ? std::pow(share, 1.0f / 3.0f) : (slope * share + 16.0f) / 116.0f;
+  const float root = fast_power(share, 1.0f / 3.0f);
+  return share > knee ? root : (slope * share + 16.0f) / 116.0f;
 }
 
-glm::vec2 lab_ab(const glm::vec3& xyz) {
-  const glm::vec3 share = xyz / xyz_from_adobe(glm::vec3(1.0f, 1.0f, 1.0f));
-  const float y = lab_curve(share.y);
-  return {500.0f * (lab_curve(share.x) - y), 200.0f * (y - lab_curve(share.z))};
+// CIELAB's a and b, and Y, of what a display emits. perceptualdiff takes the bytes that it reads
+// for red, green, blue, where its image library stores blue first. Its counts are what others
+// report, so red and blue are exchanged here, too.
+LOCKSTEP_VECTOR_CLONES
+void see(const float* __restrict emitted, int count, const glm::vec3& white,
+         float* __restrict luminance, float* __restrict ab) {
+  const float white_x = white.x, white_y = white.y, white_z = white.z;
+  for (int i = 0; i < count; ++i) {
+    const glm::vec3 xyz =
+        xyz_from_adobe(glm::vec3(emitted[3 * i + 2], emitted[3 * i + 1], emitted[3 * i]));
+    const float y = lab_curve(xyz.y / white_y);
+    luminance[i] = xyz.y;
+    ab[2 * i] = 500.0f * (lab_curve(xyz.x / white_x) - y);
+    ab[2 * i + 1] = 200.0f * (y - lab_curve(xyz.z / white_z));
+  }
 }
 
 // What the display emits.
@@ -45,24 +59,23 @@ struct Display {
   Image ab;         // CIELAB's a and b
 };
 
-// perceptualdiff takes the bytes that it reads for red, green, blue, where its image library stores
-// blue first. Its counts are what others report, so red and blue are exchanged here, too.
 Display displayed(const Image& image, const YeeSettings& settings) {
-  std::array<float, 256> emitted;
+  std::array<float, 256> emission;
   for (std::size_t code = 0; code < 256; ++code) {
-    emitted[code] = std::pow(float(code) / 255.0f, settings.gamma);
+    emission[code] = std::pow(float(code) / 255.0f, settings.gamma);
   }
+  const glm::vec3 white = xyz_from_adobe(glm::vec3(1.0f, 1.0f, 1.0f));
+  const std::size_t values = std::size_t(3 * image.width);
   Display display{Image(image.width, image.height, 1), Image(image.width, image.height, 2)};
   tbb::parallel_for(0, image.height, [&](int y) {
-    for (int x = 0; x < image.width; ++x) {
-      const float* rgb = image.at(x, y);
-      const auto emission = [&](int c) { return emitted[display_code(rgb[c])]; };
-      const glm::vec3 xyz = xyz_from_adobe(glm::vec3(emission(2), emission(1), emission(0)));
-      const glm::vec2 ab = lab_ab(xyz);
-      *display.luminance.at(x, y) = settings.luminance * xyz.y;
-      display.ab.at(x, y)[0] = ab.x;
-      display.ab.at(x, y)[1] = ab.y;
-    }
+    std::vector<std::uint8_t> codes(values);
+    std::vector<float> emitted(values);
+    display_codes(image.at(0, y), int(values), codes.data());
+    std::transform(codes.begin(), codes.end(), emitted.begin(),
+                   [&](std::uint8_t code) { return emission[code]; });
+    float* luminance = display.luminance.at(0, y);
+    see(emitted.data(), image.width, white, luminance, display.ab.at(0, y));
+    for (int x = 0; x < image.width; ++x) luminance[x] *= settings.luminance;
   });
   return display;
 }
@@ -80,6 +93,7 @@ int mirrored(int i, int n) {
 
 // `count` sums over 5 x 5 pixels whose first columns begin at `rows`. Where areas are flat, all
 // their pixels are at the threshold or none: the order of the additions is perceptualdiff's.
+LOCKSTEP_VECTOR_CLONES
 void blur(const std::array<const float*, 5>& rows, int count, float* sums) {
   float block[kSumBlock] = {};
   for (std::size_t i = 0; i < 5; ++i) {
@@ -122,14 +136,7 @@ Image blurred(const Image& image) {
   return result;
 }
 
-// Luminance blurred more and more, at full resolution (Burt and Adelson 1983).
 using Pyramid = std::vector<Image>;
-
-Pyramid pyramid_of(const Image& luminance) {
-  Pyramid levels{luminance};
-  while (levels.size() < kLevels) levels.push_back(blurred(levels.back()));
-  return levels;
-}
 
 // The least visible difference of luminance at an adaptation luminance, in cd/m^2 (Ward Larson et
 // al. 1997).
@@ -215,16 +222,25 @@ float threshold_elevation(const Pyramid& p, const Pyramid& q, std::size_t pixel,
 
 }  // namespace
 
-YeeDifference yee_difference(const Image& reference, const Image& test,
-                             const YeeSettings& settings) {
-  const Display p = displayed(reference, settings), q = displayed(test, settings);
-  const Pyramid p_levels = pyramid_of(p.luminance), q_levels = pyramid_of(q.luminance);
-  const Viewing viewing = viewing_of(settings.field_of_view, reference.width);
+YeeView yee_view(const Image& image, const YeeSettings& settings) {
+  Display display = displayed(image, settings);
+  YeeView view{{}, std::move(display.ab)};
+  view.luminances.push_back(std::move(display.luminance));
+  while (view.luminances.size() < kLevels) {
+    view.luminances.push_back(blurred(view.luminances.back()));
+  }
+  return view;
+}
+
+YeeDifference yee_difference(const YeeView& p, const YeeView& q, const YeeSettings& settings) {
+  const Pyramid &p_levels = p.luminances, &q_levels = q.luminances;
+  const int width = p.ab.width, height = p.ab.height;
+  const Viewing viewing = viewing_of(settings.field_of_view, width);
   const auto fails = [&](std::size_t pixel) {
     const std::size_t level = viewing.adaptation;
     const float adaptation =
         std::max(0.5f * (p_levels[level].pixels[pixel] + q_levels[level].pixels[pixel]), kLeast);
-    const float difference = std::abs(p.luminance.pixels[pixel] - q.luminance.pixels[pixel]);
+    const float difference = std::abs(p_levels[0].pixels[pixel] - q_levels[0].pixels[pixel]);
     const float threshold = threshold_versus_intensity(adaptation);
     float colour = 0.0f;
     if (!settings.luminance_only && adaptation >= kScotopic) {
@@ -237,15 +253,20 @@ YeeDifference yee_difference(const Image& reference, const Image& test,
     const float elevation = threshold_elevation(p_levels, q_levels, pixel, viewing, adaptation);
     return difference > elevation * threshold || colour > elevation;
   };
-  YeeDifference result{0, Image(reference.width, reference.height, 1)};
-  tbb::parallel_for(0, reference.height, [&](int y) {
-    for (int x = 0; x < reference.width; ++x) {
-      const std::size_t pixel = std::size_t(y) * std::size_t(reference.width) + std::size_t(x);
+  YeeDifference result{0, Image(width, height, 1)};
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const std::size_t pixel = std::size_t(y) * std::size_t(width) + std::size_t(x);
       result.failing.pixels[pixel] = fails(pixel) ? 1.0f : 0.0f;
     }
   });
   for (float failing : result.failing.pixels) result.pixels += failing > 0.0f;
   return result;
+}
+
+YeeDifference yee_difference(const Image& reference, const Image& test,
+                             const YeeSettings& settings) {
+  return yee_difference(yee_view(reference, settings), yee_view(test, settings), settings);
 }
 
 }  // namespace lockstep

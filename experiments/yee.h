@@ -6,6 +6,7 @@
 #include "core/image.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace lockstep {
 
@@ -22,7 +23,18 @@ struct YeeDifference {
   Image failing;  // one channel: 1 where the pixels differ visibly, else 0
 };
 
-// Linear RGB images of one size are taken as the 8-bit sRGB files that they would be saved to.
+// What a person sees of one image.
+struct YeeView {
+  std::vector<Image> luminances;  // in cd/m^2, blurred more and more (Burt and Adelson 1983)
+  Image ab;                       // CIELAB's a and b
+};
+
+// A linear RGB image is taken as the 8-bit sRGB file that it would be saved to.
+YeeView yee_view(const Image& image, const YeeSettings& settings = {});
+
+// Of two images of one size, seen under the same settings.
+YeeDifference yee_difference(const YeeView& reference, const YeeView& test,
+                             const YeeSettings& settings = {});
 YeeDifference yee_difference(const Image& reference, const Image& test,
                              const YeeSettings& settings = {});
 

@@ -2,6 +2,7 @@
 #include "experiments/flip.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -100,7 +101,7 @@ TEST(Flip, IsSymmetric) {
 }
 
 TEST(Flip, IsMirroredWithTheImages) {
-  const Image p = noise(41, 30, 4), q = noise(41, 30, 5);
+  const Image p = noise(301, 150, 4), q = noise(301, 150, 5);  // tiles end elsewhere
   const auto mirrored = [](const Image& image) {
     Image result(image.width, image.height, image.channels);
     for (int y = 0; y < image.height; ++y) {
@@ -205,6 +206,41 @@ TEST(HdrFlip, IsTheSameForBrighterImages) {
   for (float& v : brighter_p.pixels) v *= 64.0f;
   for (float& v : brighter_q.pixels) v *= 64.0f;
   EXPECT_NEAR(hdr(p, q), hdr(brighter_p, brighter_q), 1e-5);
+}
+
+TEST(HdrFlip, TellsTheExposureOfTheLargestError) {
+  // The brightest pixels differ where the first exposure shows them, the others at the last.
+  Image reference = constant(200, 24, 0.01f);
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 150; x < 200; ++x) {
+      for (int c = 0; c < 3; ++c) reference.at(x, y)[c] = 100.0f;
+    }
+  }
+  Image test = reference;
+  for (float& v : test.pixels) v *= 1.3f;
+  const HdrFlip flip = FlipReference(reference).hdr_map(test);
+  EXPECT_EQ(*flip.exposure.at(20, 12), 1.0f);
+  EXPECT_EQ(*flip.exposure.at(180, 12), 0.0f);
+}
+
+TEST(FlipReference, GivesTheSameBitsHoweverMuchIsKept) {
+  const Image reference = noise(150, 70, 14, 40.0f), test = noise(150, 70, 15, 40.0f);
+  const Image ldr = flip_ldr_map(reference, test), hdr = flip_hdr_map(reference, test);
+  const std::size_t side = 5 * 4 * 4 * kFlipTileWidth * kFlipTileHeight;  // of four tiles
+  for (const std::size_t bytes : {side / 2, side, 3 * side, 100 * side}) {
+    const FlipReference kept(reference, kPixelsPerDegree, bytes);
+    EXPECT_EQ(kept.ldr_map(test).pixels, ldr.pixels) << bytes;
+    EXPECT_EQ(kept.hdr_map(test).map.pixels, hdr.pixels) << bytes;
+  }
+}
+
+TEST(Flip, HasTheSameBitsForAnyNumberOfThreads) {
+  const Image p = noise(300, 140, 16, 8.0f), q = noise(300, 140, 17, 8.0f);
+  const auto with_threads = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return flip_hdr_map(p, q).pixels;
+  };
+  EXPECT_EQ(with_threads(1), with_threads(4));
 }
 
 struct Golden {

@@ -78,12 +78,22 @@ TEST(Metrics, MapsHoldWhatValuesSum) {
     return -1.0;
   };
   EXPECT_EQ(value("flip_ldr"), mean_of(evaluation.flip_ldr));
-  EXPECT_EQ(value("flip_hdr"), mean_of(evaluation.flip_hdr));
+  EXPECT_EQ(value("flip_hdr"), mean_of(evaluation.flip_hdr.map));
   EXPECT_NEAR(value("yee_share"), mean_of(evaluation.yee_failing), 1e-12);
   EXPECT_EQ(value("yee_pixels"), 200.0 * value("yee_share"));
   EXPECT_GT(value("flip_ldr"), 0.0);
   EXPECT_GT(value("yee_pixels"), 0.0);
   EXPECT_LT(value("ssim"), 1.0);
+}
+
+TEST(Metrics, APreparedReferenceChangesNothing) {
+  const Image reference = constant(40, 30, 0.3f);
+  const PreparedReference prepared = prepare_reference(reference);
+  for (const float brightest : {0.2f, 0.4f, 7.0f}) {
+    Image test = reference;
+    for (int c = 0; c < 3; ++c) test.at(12, 4)[c] = brightest;
+    EXPECT_EQ(evaluate(prepared, test).values, evaluate_metrics(reference, test));
+  }
 }
 
 TEST(Metrics, OtherThanThreeChannelsAreRefused) {

@@ -2,8 +2,10 @@
 #include "experiments/structural_error.h"
 
 #include "core/srgb.h"
+#include "experiments/block_error.h"
 #include "experiments/display_image.h"
 #include "experiments/error_spectrum.h"
+#include "experiments/fast_power.h"
 #include "experiments/separable_filter.h"
 #include "experiments/squared_error.h"
 
@@ -70,21 +72,78 @@ TEST(SeparableFilter, IsTheSumOverAllPairsOfWeights) {
   }
 }
 
-TEST(DisplayImage, CodesAreThoseThatFilesHold) {
-  for (int code = 0; code < 256; ++code) {
-    EXPECT_EQ(display_code(linear_from_srgb(float(code) / 255.0f)), code);
+TEST(FastPower, IsWithinItsBounds) {
+  for (double x = 1e-20; x < 1e20; x *= 1.0173) {
+    const float value = float(x);
+    const double expected = std::log2(double(value));
+    EXPECT_NEAR(fast_log2(value), expected, 2e-7 * std::max(1.0, std::abs(expected))) << x;
+    for (const float p : {0.0f, 1.0f / 3.0f, 1.0f / 2.4f, 0.7f, 1.0f}) {
+      const double power = std::pow(double(value), double(p));
+      EXPECT_NEAR(fast_power(value, p), power, 2e-6 * power) << x << " ^ " << p;
+    }
   }
-  EXPECT_EQ(display_code(-1.0f), 0);
-  EXPECT_EQ(display_code(7.0f), 255);
+  for (double x = -126.0; x < 127.0; x += 0.0137) {
+    const double expected = std::exp2(double(float(x)));
+    EXPECT_NEAR(fast_exp2(float(x)), expected, 2e-7 * expected) << x;
+  }
+  EXPECT_EQ(fast_power(0.0f, 0.7f), 0.0f);
+  EXPECT_EQ(fast_power(-1.0f, 0.7f), 0.0f);
 }
 
-TEST(DisplayImage, MagmaGetsBrighter) {
+TEST(DisplayImage, CodesAreThoseThatFilesHold) {
+  std::vector<float> linear;
+  for (int code = 0; code < 256; ++code) linear.push_back(linear_from_srgb(float(code) / 255.0f));
+  linear.insert(linear.end(), {-1.0f, 7.0f});
+  std::vector<std::uint8_t> codes(linear.size());
+  display_codes(linear.data(), int(linear.size()), codes.data());
+  for (int code = 0; code < 256; ++code) EXPECT_EQ(codes[std::size_t(code)], code);
+  EXPECT_EQ(codes[256], 0);
+  EXPECT_EQ(codes[257], 255);
+}
+
+TEST(DisplayImage, ColourMapsGetBrighter) {
   Image map(101, 1, 1);
   for (int x = 0; x <= 100; ++x) *map.at(x, 0) = float(x) / 100.0f;
-  const Image luma = display_luma(magma(map));
-  for (int x = 1; x <= 100; ++x) EXPECT_GT(*luma.at(x, 0), *luma.at(x - 1, 0)) << x;
-  EXPECT_LT(*luma.at(0, 0), 0.01f);
-  EXPECT_GT(*luma.at(100, 0), 0.9f);
+  for (const Image& colours : {magma(map), viridis(map)}) {
+    const Image luma = display_luma(colours);
+    for (int x = 1; x <= 100; ++x) EXPECT_GT(*luma.at(x, 0), *luma.at(x - 1, 0)) << x;
+    EXPECT_LT(*luma.at(0, 0), 0.1f);
+    EXPECT_GT(*luma.at(100, 0), 0.8f);
+  }
+}
+
+TEST(BlockError, IsOfBlockMeansRelativeToTheReference) {
+  // Four blocks of 16 x 16; the test is 20 % too bright in one and, with noise of mean 0, right in
+  // the others: sqrt(0.25 (0.2 / 1.01)^2).
+  const Image reference = constant(32, 32, 2.0f);
+  Image test = reference;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        test.at(x, y)[c] = x < 16 && y < 16 ? 2.4f : (x + y) % 2 ? 3.0f : 1.0f;
+      }
+    }
+  }
+  EXPECT_NEAR(block_relative_rmse(reference, test), 0.5 * 0.2 / 1.01, 1e-6);
+  EXPECT_NEAR(luminance_ratio(reference, test), 1.05, 1e-6);
+}
+
+TEST(BlockError, CountsSmallerBlocksByTheirPixels) {
+  const Image reference = constant(20, 16, 1.0f);  // a block of 16 columns, one of 4
+  Image test = reference;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 16; x < 20; ++x) {
+      for (int c = 0; c < 3; ++c) test.at(x, y)[c] = 1.5f;
+    }
+  }
+  EXPECT_NEAR(block_relative_rmse(reference, test), std::sqrt(0.2) * 0.5 / 1.01, 1e-6);
+}
+
+TEST(BlockError, OfBlackImages) {
+  const Image black = constant(16, 16, 0.0f), grey = constant(16, 16, 1.0f);
+  EXPECT_EQ(block_relative_rmse(black, black), 0.0);
+  EXPECT_FALSE(std::isfinite(block_relative_rmse(black, grey)));
+  EXPECT_FALSE(std::isfinite(luminance_ratio(black, grey)));
 }
 
 TEST(SquaredError, MseIsTheSquareOfRmse) {
@@ -265,6 +324,20 @@ TEST(Spectrum, TakesImagesOfAnySize) {
   }
   const ErrorSpectrum offset = error_spectrum(constant(9, 9, 0.0f), constant(9, 9, 3.0f), 4);
   for (const SpectrumRing& ring : offset.rings) EXPECT_NEAR(ring.power, 0.0, 1e-12);
+}
+
+TEST(Spectrum, LeavesOutWhatMakesSidesSlow) {
+  // 131 is prime; 130 = 2 * 5 * 13.
+  const Image noise = grey_noise(131, 6, 0.0f, 1.0f, 13);
+  Image shorter(130, 6, 3);
+  for (int y = 0; y < 6; ++y) std::copy_n(noise.at(0, y), 3 * 130, shorter.at(0, y));
+  const ErrorSpectrum all = error_spectrum(constant(131, 6, 0.0f), noise, 8);
+  const ErrorSpectrum part = error_spectrum(constant(130, 6, 0.0f), shorter, 8);
+  EXPECT_EQ(all.white, part.white);
+  ASSERT_EQ(all.rings.size(), part.rings.size());
+  for (std::size_t i = 0; i < all.rings.size(); ++i) {
+    EXPECT_EQ(all.rings[i].power, part.rings[i].power);
+  }
 }
 
 TEST(Spectrum, RingsWithoutAFrequencyAreLeftOut) {
