@@ -6,17 +6,19 @@
 #include "experiments/progress.h"
 #include "experiments/render_metadata.h"
 #include "experiments/render_stats_json.h"
+#include "experiments/tev_display.h"
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 namespace lockstep {
 namespace {
 
 struct RenderOptions {
   RendererOptions renderer;
-  std::string scene, output, sampler = "random", stats, weights;
+  std::string scene, output, sampler = "random", stats, weights, display;
   std::optional<int> spp;
   std::optional<double> time;
   std::uint32_t seed = 0;
@@ -91,16 +93,32 @@ void write_outputs(const RenderOptions& options, const SceneOverrides& overrides
   }
 }
 
+// A view of the image as it forms, where one is asked for.
+std::unique_ptr<TevDisplay> make_display(const RenderOptions& options,
+                                         const std::optional<TevAddress>& address,
+                                         const Scene& scene, RenderSettings& settings) {
+  if (!address) return {};
+  const FilmDescription& film = scene.description().film;
+  auto display = std::make_unique<TevDisplay>(*address, options.output, film.width, film.height);
+  settings.watch = [shown = display.get()](int x, int y, const Image& tile) {
+    shown->update(x, y, tile);
+  };
+  return display;
+}
+
 void run_render(const RenderOptions& options) {
   if (!options.renderer.resolution.empty()) parse_resolution(options.renderer.resolution);
   const SamplerSpec sampler = parse_sampler(options.sampler);
   RenderSettings settings = render_settings(options.renderer);
   const SceneOverrides overrides = scene_overrides(options.renderer);
   check_outputs(options, sampler);
+  std::optional<TevAddress> address;
+  if (!options.display.empty()) address = parse_tev_address(options.display);
 
   const Scene scene(read_described(options.scene, options.renderer, overrides),
                     embree_isa(settings.isa));
   settings = settings_for(options, settings, scene.description().defaults);
+  const std::unique_ptr<TevDisplay> display = make_display(options, address, scene, settings);
   ProgressMeter meter(options.quiet);
   const auto show = [&](double fraction) {
     meter.show(fraction, options.output);
@@ -108,13 +126,15 @@ void run_render(const RenderOptions& options) {
   };
   const RenderResult result = render(scene, sampler, settings, show);
   meter.clear();
+  if (display) display->update(0, 0, result.image);
   report_nonfinite(result.stats, settings.seed);
   write_outputs(options, overrides, scene, sampler, settings, result);
   if (!options.quiet) report_done(options, result.stats);
 }
 
 void add_options(CLI::App& command, RenderOptions& options) {
-  command.add_option("SCENE", options.scene, "Built-in scene (see 'lockstep scenes') or scene file")
+  command
+      .add_option("SCENE", options.scene, "Built-in scene (see 'lockstep scenes') or scene file")
       ->type_name("")
       ->required();
   command
@@ -148,6 +168,11 @@ void add_options(CLI::App& command, RenderOptions& options) {
   command.add_flag("--resume", options.resume,
                    "Keep the state in FILE.state, and go on from it if it is there:\n"
                    "after an interruption, or with more --spp (rcs: with a fixed pilot=N)");
+  command
+      .add_option("--display", options.display,
+                  "Show the image as it forms in a running tev viewer (port 14158\n"
+                  "where none is given)")
+      ->type_name("HOST:PORT");
   command.add_flag("--quiet", options.quiet,
                    "No progress and no summary; warnings and errors only");
   add_renderer_options(command, options.renderer);

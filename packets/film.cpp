@@ -26,6 +26,18 @@ Image mean(const Film& film) {
   return make_image(film, [&](std::size_t at, std::size_t c) { return pixel_mean(film, at, c); });
 }
 
+Image mean(const Film& film, int x0, int y0, int x1, int y1) {
+  Image part(x1 - x0, y1 - y0);
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) {
+      const std::size_t at = 4 * (std::size_t(y) * std::size_t(film.width) + std::size_t(x));
+      float* pixel = part.at(x - x0, y - y0);
+      for (std::size_t c = 0; c < 3; ++c) pixel[c] = float(pixel_mean(film, at, c));
+    }
+  }
+  return part;
+}
+
 Image mean(const Film& a, const Film& b) {
   return make_image(a, [&](std::size_t at, std::size_t c) {
     return ratio(a.sums[at + c] + b.sums[at + c], a.sums[at + 3] + b.sums[at + 3]);

@@ -23,6 +23,9 @@ struct Film {
 // Means of the finite samples; black where a pixel has none.
 Image mean(const Film& film);
 
+// The same of the pixels [x0, x1) x [y0, y1) alone.
+Image mean(const Film& film, int x0, int y0, int x1, int y1);
+
 // The mean over both films' samples together: sample-count weighted, hence unbiased.
 Image mean(const Film& a, const Film& b);
 

@@ -78,6 +78,7 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
                             worker.totals.counts);
     worker.totals.cpu_seconds += thread_cpu_seconds() - start;
     const std::lock_guard lock(report);
+    if (pass.watch) pass.watch(job);
     if (!tile_done(double(++done) / (double(columns) * rows))) stopped = true;
   };
 

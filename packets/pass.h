@@ -43,6 +43,8 @@ struct Pass {
   PathSettings path;
   std::uint32_t samples = 1;
   int threads = 1;
+  // If set, called after each tile, from one thread at a time, while nobody writes to that tile.
+  std::function<void(const TileJob&)> watch;
 };
 
 // Adds samples [film.samples, film.samples + pass.samples) to the film. `tile_done` is called after

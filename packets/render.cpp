@@ -186,6 +186,11 @@ class Renderer {
 
   void run_samples(Film& film, std::uint32_t samples) {
     pass_.samples = samples;
+    if (settings_.watch) {
+      pass_.watch = [&](const TileJob& tile) {
+        settings_.watch(tile.x0, tile.y0, mean(film, tile.x0, tile.y0, tile.x1, tile.y1));
+      };
+    }
     const double done = double(samples_done());
     const bool finished = run_pass(pass_, film, state_.totals, [&](double share) {
       if (!progress_) return true;

@@ -39,6 +39,10 @@ struct RenderSettings {
   // If not empty: the film is kept in this file as the render goes on, and a render that finds it
   // there continues it. Throws Error where it was made with other settings.
   std::string resume_file;
+  // If set, gets the image as it forms: each tile that samples were added to, and where its upper
+  // left pixel is. Means of the pilot's samples while that is rendered, then of those that follow.
+  // From one thread at a time; the render waits for it.
+  std::function<void(int x, int y, const Image& tile)> watch;
 };
 
 struct RayCounts {
