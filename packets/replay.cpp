@@ -26,7 +26,11 @@ void classify(ClassifiedLog& log) {
   std::map<std::pair<RayKind, int>, std::size_t> known;
   for (const RayLog::Queue& q : log.rays.queues) {
     const auto [entry, is_new] = known.try_emplace({q.kind, q.bounce}, log.classes.size());
-    if (is_new) log.classes.push_back({q.kind, q.bounce, 0, {}});
+    if (is_new) {
+      log.classes.emplace_back();
+      log.classes.back().kind = q.kind;
+      log.classes.back().bounce = q.bounce;
+    }
     log.classes[entry->second].rays += std::uint64_t(q.count);
     log.class_of_queue.push_back(entry->second);
   }
@@ -66,10 +70,9 @@ std::vector<TraversalPolicy> policies_by_mode(int width) {
   return policies;
 }
 
-// All rays once in every mode. The policy learns from the beginning. `progress` gets a share.
+// All rays once in every mode, with a policy for each. `progress` gets a share.
 Seconds replay_all(const Scene& scene, const Kernel& kernel, const ClassifiedLog& log,
-                   const Progress& progress) {
-  std::vector<TraversalPolicy> policies = policies_by_mode(default_width(kernel.isa));
+                   std::vector<TraversalPolicy>& policies, const Progress& progress) {
   Seconds seconds(log.classes.size() * replay_modes, 0.0);
   const std::size_t queues = log.rays.queues.size();
   for (std::size_t begin = 0; begin < queues; begin += block_queues) {
@@ -159,6 +162,7 @@ Replay replay(const Scene& scene, const SamplerSpec& sampler, const RenderSettin
   result.classes = log.classes;
 
   const Kernel& kernel = find_kernel(settings.isa, settings.width);
+  std::vector<TraversalPolicy> policies;
   std::vector<double> renders;
   std::vector<std::vector<double>> times(result.classes.size() * replay_modes);
   for (int repeat = 0; repeat < repeats; ++repeat) {
@@ -166,13 +170,21 @@ Replay replay(const Scene& scene, const SamplerSpec& sampler, const RenderSettin
     const auto show = [&](double share) {
       return !progress || progress((repeat + share) / repeats);
     };
-    const Seconds seconds = replay_all(scene, kernel, log, show);
+    // The policy learns from the beginning.
+    policies = policies_by_mode(default_width(kernel.isa));
+    const Seconds seconds = replay_all(scene, kernel, log, policies, show);
     for (std::size_t i = 0; i < seconds.size(); ++i) {
       if (is_measured(int(i % replay_modes))) times[i].push_back(seconds[i]);
     }
   }
-  for (std::size_t c = 0; c < result.classes.size(); ++c) {
-    judge_policy(&times[c * replay_modes], result.classes[c]);
+  const std::vector<Coherence> coherence =
+      coherence_of(scene.data(), log.rays, log.class_of_queue, log.classes.size());
+  for (std::size_t i = 0; i < result.classes.size(); ++i) {
+    ReplayClass& c = result.classes[i];
+    judge_policy(&times[i * replay_modes], c);
+    c.coherence = coherence[i];
+    const int spread = spread_class(float(coherence[i].cosine));
+    c.policy_mode = policies[policy_replay].plan({c.kind, c.bounce, spread}, 1).mode;
   }
   result.render_seconds = median(renders);
   for (std::size_t i = 0; i < times.size(); ++i) {

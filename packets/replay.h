@@ -3,6 +3,7 @@
 // packets on the same rays, how much of a gain is locality and how much is SIMD.
 #pragma once
 
+#include "packets/coherence.h"
 #include "packets/render.h"
 
 #include <vector>
@@ -25,6 +26,8 @@ struct ReplayClass {
   // Of the fixed mode that was fastest in every other repeat, and of the policy, both measured in
   // the repeats between: the minimum of noisy figures would flatter the fixed mode.
   double best_seconds = 0.0, policy_seconds = 0.0;
+  TraversalMode policy_mode;  // that the policy has come to
+  Coherence coherence;
 
   int best_mode() const;  // the fastest fixed one
 };

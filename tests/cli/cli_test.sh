@@ -130,15 +130,29 @@ done
 # A profile.
 expect 2 'no weight' profile cornell -o prof --sampler owen
 expect 2 '0 to 1' profile cornell -o prof --weights 0,2
-expect 0 'best mode' profile cornell -o prof --weights 0,1 --lanes 4x4x1,1x1x16 --spp 2 --depth 2 \
-  --repeats 1 --resolution 32x24 --quiet
+expect 2 "'4:' is no map" profile cornell -o prof --maps 4:
+expect 0 'best mode' profile cornell -o prof --weights 0,1 --maps 4:0.02 --lanes 4x4x1,1x1x16 --spp 2 \
+  --depth 2 --repeats 1 --reference-spp 4 --seeds 1 --resolution 32x24 --quiet
 has prof/profile.csv '^cornell,rcs,1,1x1x16,bounce,1,single,'
 has prof/profile.csv '^cornell,rcs,0,4x4x1,shadow,0,auto,'
-[ "$(wc -l <prof/renders.csv)" = 5 ] || fail "renders.csv has $(wc -l <prof/renders.csv) lines, not 5"
+[ "$(wc -l <prof/renders.csv)" = 7 ] || fail "renders.csv has $(wc -l <prof/renders.csv) lines, not 7"
+has prof/coherence.csv '^cornell,rcs,c=4 t=0.02,4x4x1,bounce,1,'
+has prof/errors.csv '^cornell,rcs,0,equal_time,'
+has prof/profile.html 'id="data"'
+
+# A viewer that is not there is one warning.
+expect 2 'no port' render cornell -o v.exr --display localhost:x
+expect 0 'v.exr: 1 spp' render cornell -o v.exr --spp 1 --resolution 8x8 --display 127.0.0.1:1
+[ "$(grep -c 'warning: --display' stderr)" = 1 ] || fail "--display: $(cat stderr)"
 
 # Metrics.
 expect 0 '^rmse +0$' metrics a.exr a.exr
 expect 0 '"relmse_trimmed": ' metrics a.exr b.exr --json
+expect 0 '"spectrum": ' metrics a.exr b.exr --json --maps maps
+for map in flip_ldr.png flip_hdr.png flip_hdr_exposure.png yee.png error.exr; do
+  [ -s "maps/$map" ] || fail "no maps/$map"
+done
+expect 0 '^luminance_ratio +1$' metrics a.exr a.exr
 expect 1 '32x24.*16x24' metrics a.exr c.exr
 
 # A comparison.
