@@ -32,16 +32,15 @@ void check_reference(const CompareSettings& settings) {
 
 void check_targets(const CompareSettings& settings) {
   for (const ErrorTarget& target : settings.targets) {
-    const auto place =
-        std::find_if(metrics().begin(), metrics().end(),
-                     [&](const Metric& metric) { return metric.name == target.metric; });
+    const auto place = std::find_if(metrics().begin(), metrics().end(), [&](const Metric& metric) {
+      return metric.name == target.metric;
+    });
     if (place == metrics().end() || !place->lower_is_better) {
       std::string names;
       for (const Metric& metric : metrics()) {
         if (metric.lower_is_better) names += fmt::format(" {}", metric.name);
       }
-      throw UsageError(
-          fmt::format("--targets: '{}' is not one of{}", target.metric, names));
+      throw UsageError(fmt::format("--targets: '{}' is not one of{}", target.metric, names));
     }
   }
 }
@@ -230,7 +229,12 @@ Comparison compare(const CompareSettings& settings, const CompareProgress& progr
   Journal journal = open_journal(settings);
   if (!settings.resume) set_aside((fs::path(settings.directory) / "errors.csv").string());
   ErrorsCsv csv(settings.directory, rows_of(journal));
-  Run run{settings, progress, scene_done, costs, journal, csv,
+  Run run{settings,
+          progress,
+          scene_done,
+          costs,
+          journal,
+          csv,
           Clock::now() + std::chrono::duration_cast<Clock::duration>(
                              std::chrono::duration<double>(settings.max_seconds))};
   run.comparison.settings = settings;

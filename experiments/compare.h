@@ -4,8 +4,8 @@
 // Times are what RenderStats says: thread CPU seconds and wall seconds of the whole render, pilot,
 // filter and weights included. Scene loading is not part of them.
 //
-// All that was measured is in a journal (journal.h): a comparison that was stopped, at any moment and
-// by anything, continues from there.
+// All that was measured is in a journal (journal.h): a comparison that was stopped, at any moment
+// and by anything, continues from there.
 #pragma once
 
 #include "core/image.h"
@@ -43,8 +43,8 @@ struct CompareSettings {
   RenderSettings render;     // threads, width, lanes, instruction set, roulette depth
   double max_seconds = 0.0;  // if positive: begin no further seed past this wall time
   std::string directory;
-  std::string reference_folder;      // where rendered references are kept; empty: the directory
-  std::vector<double> budgets;       // CPU seconds to report at; empty: chosen from what was measured
+  std::string reference_folder;  // where rendered references are kept; empty: the directory
+  std::vector<double> budgets;   // CPU seconds to report at; empty: chosen from what was measured
   std::vector<ErrorTarget> targets;  // empty: a FLIP that all samplers reach
   // Rungs whose median time is uncertain by more than this share are timed again, at most so often.
   double timing_spread = 0.03;
@@ -141,8 +141,8 @@ using CompareProgress = std::function<bool(double fraction, std::string_view lab
 // Called when a scene is done at a depth and others follow, with all so far, which is not complete.
 using SceneDone = std::function<void(const Comparison&)>;
 
-// Runs the experiment; the journal and errors.csv in the directory grow row by row, images appear as
-// they are rendered. When stopped, returns what was measured so far. Throws Error, UsageError.
+// Runs the experiment; the journal and errors.csv in the directory grow row by row, images appear
+// as they are rendered. When stopped, returns what was measured so far. Throws Error, UsageError.
 Comparison compare(const CompareSettings& settings, const CompareProgress& progress,
                    const SceneDone& scene_done = {});
 

@@ -241,8 +241,10 @@ void add_compare_command(CLI::App& program, RunCommand& run) {
       "scenes. What was stopped goes on with --resume; Ctrl-C finishes the current render and\n"
       "writes a report of what there is.");
   command->footer(
-      "DIR receives errors.csv (a row for each render, as it is measured), journal.jsonl (all that\n"
-      "--resume needs), spectra.csv (the errors' power by frequency), summary.json, report.html and\n"
+      "DIR receives errors.csv (a row for each render, as it is measured), journal.jsonl (all "
+      "that\n"
+      "--resume needs), spectra.csv (the errors' power by frequency), summary.json, report.html "
+      "and\n"
       "the first seed's images. Errors are interpolated between sample counts, never beyond them.\n"
       "Verdicts against random need it among the samplers, and at least 4 seeds.\n"
       "\n"
@@ -255,9 +257,8 @@ void add_compare_command(CLI::App& program, RunCommand& run) {
       "  lockstep compare experiment.toml --threads 1 -o out/one-thread");
   auto options = std::make_shared<CompareOptions>();
   add_options(*command, *options);
-  command->callback([command, options, &run] {
-    run = [command, options] { run_compare(*command, *options); };
-  });
+  command->callback(
+      [command, options, &run] { run = [command, options] { run_compare(*command, *options); }; });
 }
 
 }  // namespace lockstep

@@ -46,9 +46,8 @@ std::string conditions_of(const Phase& phase) {
 }
 
 RunImages image_names(const Phase& phase, int sampler, int spp, bool has_weights) {
-  const std::string stem =
-      fmt::format("{}-{}-{}spp", phase.result.label,
-                  file_name_safe(to_string(sampler_of(phase, sampler))), spp);
+  const std::string stem = fmt::format("{}-{}-{}spp", phase.result.label,
+                                       file_name_safe(to_string(sampler_of(phase, sampler))), spp);
   return {sampler, spp, stem + ".exr", stem + ".png", has_weights ? stem + "-weights.png" : ""};
 }
 
@@ -106,10 +105,11 @@ int place_of(const CompareSettings& settings, const std::string& sampler) {
 
 void check_conditions(const Phase& phase, const JournalEntry& entry) {
   if (entry.conditions == phase.conditions) return;
-  throw error_at(phase.journal.path(), entry.line,
-                 fmt::format("{} at depth {} was measured under other conditions ({}) than those of "
-                             "now ({}); use the same again, or leave out --resume to begin anew",
-                             entry.scene, entry.depth, entry.conditions, phase.conditions));
+  throw error_at(
+      phase.journal.path(), entry.line,
+      fmt::format("{} at depth {} was measured under other conditions ({}) than those of "
+                  "now ({}); use the same again, or leave out --resume to begin anew",
+                  entry.scene, entry.depth, entry.conditions, phase.conditions));
 }
 
 void restore_run(Phase& phase, MeasuredRun measured) {
@@ -146,15 +146,14 @@ void restore(Phase& phase) {
   }
 }
 
-// Renders in full, whatever `progress` says: a stop waits for the end of the render. Returns whether
-// one was asked for.
+// Renders in full, whatever `progress` says: a stop waits for the end of the render. Returns
+// whether one was asked for.
 bool render_whole(Phase& phase, int sampler, const std::string& what, double work_before,
                   RenderResult& result) {
   const RenderSettings& settings = phase.render_settings;
   bool stop = false;
-  const std::string label =
-      fmt::format("{}: {} at {} spp, {}", phase.result.label,
-                  to_string(sampler_of(phase, sampler)), settings.spp, what);
+  const std::string label = fmt::format("{}: {} at {} spp, {}", phase.result.label,
+                                        to_string(sampler_of(phase, sampler)), settings.spp, what);
   const auto show = [&](double fraction) {
     stop |= !phase.progress(work_before + fraction * settings.spp, label);
     return true;
@@ -183,8 +182,8 @@ Measurement measurement_of(const Phase& phase, int sampler, const RenderResult& 
   return run;
 }
 
-// Renders once with the settings and measures. Images come first, the journal's line last: what has a
-// line has all its files.
+// Renders once with the settings and measures. Images come first, the journal's line last: what has
+// a line has all its files.
 void measure(Phase& phase, int sampler, double work_before) {
   const std::string what =
       fmt::format("seed {} of {}", phase.render_settings.seed + 1, phase.settings.seeds);

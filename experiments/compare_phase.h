@@ -25,12 +25,12 @@ struct Phase {
   // Work in samples per pixel; false asks to stop.
   std::function<bool(double work, std::string_view label)> progress;
 
-  std::string conditions = {};                             // see conditions_of() in the source
+  std::string conditions = {};                              // see conditions_of() in the source
   std::set<std::tuple<int, std::uint32_t, int>> done = {};  // sampler, seed, spp
 };
 
-// Takes over what the journal has of this scene and depth, and measures the rest. `reference_work` is
-// the work that the reference takes. Returns false where the time ran out before all seeds were
+// Takes over what the journal has of this scene and depth, and measures the rest. `reference_work`
+// is the work that the reference takes. Returns false where the time ran out before all seeds were
 // rendered. Throws Error, and Cancelled where it was asked to stop.
 bool run_phase(Phase& phase, double reference_work, std::chrono::steady_clock::time_point deadline);
 

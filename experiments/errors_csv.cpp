@@ -34,8 +34,8 @@ std::string errors_csv_row(std::string_view scene, int depth, std::string_view s
                                  run.seed, run.spp, run.cpu_seconds, run.wall_seconds);
   for (double error : run.errors) line += fmt::format(",{}", error);
   return line + fmt::format(",{},{},{},{},{},{},{},{}", depth, run.pilot_spp, run.mean_weight,
-                            to_string(run.lanes), run.lanes_active, run.nonfinite,
-                            run.packet_width, run.threads);
+                            to_string(run.lanes), run.lanes_active, run.nonfinite, run.packet_width,
+                            run.threads);
 }
 
 std::string spectra_csv(const Comparison& comparison) {

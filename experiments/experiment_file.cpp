@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -67,7 +68,8 @@ std::optional<std::string> text_of(const toml::node& node, Kind kind) {
   const bool text = kind == Kind::Text || kind == Kind::TextOrNumber;
   const bool number = kind == Kind::Number || kind == Kind::TextOrNumber;
   if (const auto* value = node.as_string(); value && text) return value->get();
-  if (const auto* value = node.as_integer(); value && number) return fmt::format("{}", value->get());
+  if (const auto* value = node.as_integer(); value && number)
+    return fmt::format("{}", value->get());
   if (const auto* value = node.as_floating_point(); value && number) {
     return fmt::format("{}", value->get());
   }
@@ -114,23 +116,21 @@ toml::table parse_file(const std::string& path) {
   }
 }
 
-// Whole numbers stay such.
-void insert_value(toml::array& list, Kind kind, const std::string& text) {
-  const char* end = text.data() + text.size();
-  std::int64_t whole = 0;
+std::optional<double> number_in(const std::string& text) {
   double number = 0.0;
-  const auto is_whole = [](std::from_chars_result result, const char* last) {
-    return result.ec == std::errc() && result.ptr == last;
-  };
-  if (kind == Kind::Switch) {
-    list.push_back(text == "true");
-  } else if (kind != Kind::Text && is_whole(std::from_chars(text.data(), end, whole), end)) {
-    list.push_back(whole);
-  } else if (kind != Kind::Text && is_whole(std::from_chars(text.data(), end, number), end)) {
-    list.push_back(number);
-  } else {
-    list.push_back(text);
-  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return number;
+}
+
+// As it stands in a file.
+std::string value_text(Kind kind, const std::string& text) {
+  if (kind == Kind::Switch) return text;
+  const std::optional<double> number = kind == Kind::Text ? std::nullopt : number_in(text);
+  if (number) return fmt::format("{}", *number);
+  std::ostringstream quoted;
+  quoted << toml::value<std::string>(text);
+  return quoted.str();
 }
 
 }  // namespace
@@ -179,23 +179,23 @@ std::vector<ExperimentEntry> read_experiment(const std::string& path) {
     }
     entries.push_back(read_entry(path, *key, node));
   }
-  std::sort(entries.begin(), entries.end(), [](const ExperimentEntry& a, const ExperimentEntry& b) {
-    return a.line < b.line;
-  });
+  std::sort(entries.begin(), entries.end(),
+            [](const ExperimentEntry& a, const ExperimentEntry& b) { return a.line < b.line; });
   return entries;
 }
 
 std::string experiment_text(const std::vector<ExperimentEntry>& entries) {
-  std::ostringstream text;
+  std::string text;
   for (const ExperimentEntry& entry : entries) {
-    toml::array list;
-    for (const std::string& value : entry.values) insert_value(list, entry.key->kind, value);
-    text << entry.key->name << " = ";
-    const auto print = [&](const auto& node) { text << node; };
-    entry.key->is_list ? print(list) : list.front().visit(print);
-    text << '\n';
+    std::vector<std::string> values;
+    for (const std::string& value : entry.values) {
+      values.push_back(value_text(entry.key->kind, value));
+    }
+    const std::string joined = fmt::format("{}", fmt::join(values, ", "));
+    text += entry.key->is_list ? fmt::format("{} = [{}]\n", entry.key->name, joined)
+                               : fmt::format("{} = {}\n", entry.key->name, joined);
   }
-  return text.str();
+  return text;
 }
 
 }  // namespace lockstep

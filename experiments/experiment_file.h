@@ -1,5 +1,5 @@
-// Experiments written down: a TOML file whose keys are compare's options, with underscores for their
-// hyphens. docs/compare.md lists them.
+// Experiments written down: a TOML file whose keys are compare's options, with underscores for
+// their hyphens. docs/compare.md lists them.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// journal.jsonl: all that a comparison has measured, a line of JSON for each render, written when the
-// render is done. Everything else that a comparison writes can be made from it again, so one that was
-// stopped at any moment goes on from its last line.
+// journal.jsonl: all that a comparison has measured, a line of JSON for each render, written when
+// the render is done. Everything else that a comparison writes can be made from it again, so one
+// that was stopped at any moment goes on from its last line.
 #pragma once
 
 #include "experiments/compare.h"
@@ -32,8 +32,8 @@ struct JournalEntry {
 class Journal {
  public:
   // Opens the journal of `directory`. With `resume` its entries are read, and a last line that was
-  // cut short is removed; otherwise an earlier journal is set aside. Throws Error where a line is not
-  // a comparison's, and where another process writes to it.
+  // cut short is removed; otherwise an earlier journal is set aside. Throws Error where a line is
+  // not a comparison's, and where another process writes to it.
   Journal(const std::string& directory, bool resume);
 
   const std::string& path() const { return path_; }

@@ -238,7 +238,8 @@ std::vector<double> parse_time_budgets(std::string_view text) {
     const std::optional<double> seconds = positive_number(item);
     if (!seconds) {
       throw UsageError(fmt::format(
-          "--time-budgets: '{}' is not a list of seconds of CPU time above 0, such as 1,2,4", text));
+          "--time-budgets: '{}' is not a list of seconds of CPU time above 0, such as 1,2,4",
+          text));
     }
     budgets.push_back(*seconds);
   }
@@ -253,7 +254,8 @@ std::vector<std::pair<std::string, double>> parse_targets(std::string_view text)
         positive_number(std::string_view(item).substr(std::min(equals + 1, item.size())));
     if (!error) {
       throw UsageError(fmt::format(
-          "--targets: '{}' is not METRIC=ERROR with an error above 0, such as flip_ldr=0.05", item));
+          "--targets: '{}' is not METRIC=ERROR with an error above 0, such as flip_ldr=0.05",
+          item));
     }
     targets.emplace_back(item.substr(0, equals), *error);
   }

@@ -93,8 +93,9 @@ AppendFile::AppendFile(const std::string& path)
   if (file_ < 0) fail(errno);
   if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     ::close(file_);
-    throw Error(path_ + ": another process writes to this file; wait for it, or choose another "
-                        "folder");
+    throw Error(path_ +
+                ": another process writes to this file; wait for it, or choose another "
+                "folder");
   }
 }
 

@@ -1,5 +1,5 @@
-// Files that results go to: checked before a long run, so that it does not fail when its result is to
-// be written, and written so that nothing is lost when it is stopped or the disk is full.
+// Files that results go to: checked before a long run, so that it does not fail when its result is
+// to be written, and written so that nothing is lost when it is stopped or the disk is full.
 #pragma once
 
 #include <cstdint>

@@ -37,9 +37,9 @@ std::string reference_path(const CompareSettings& settings, const SceneCompariso
   for (char c : reference_key(settings, comparison, scene)) print.add(std::uint32_t(c));
   const std::string& folder =
       settings.reference_folder.empty() ? settings.directory : settings.reference_folder;
-  return (fs::path(folder) /
-          fmt::format("reference-{}-{:016x}.exr",
-                      file_name_safe(fs::path(comparison.scene).stem().string()), print.value()))
+  return (fs::path(folder) / fmt::format("reference-{}-{:016x}.exr",
+                                         file_name_safe(fs::path(comparison.scene).stem().string()),
+                                         print.value()))
       .string();
 }
 
@@ -58,7 +58,8 @@ std::pair<Image, double> average(const Image& a, const Image& b) {
 }
 
 // The share of a metric's value between the two halves that is the mean's own error, whose variance
-// is a quarter of that of their difference. Empty where the metric is neither an error nor its square.
+// is a quarter of that of their difference. Empty where the metric is neither an error nor its
+// square.
 std::optional<double> share_of_mean(const Metric& metric) {
   const std::string_view name = metric.name;
   if (!metric.lower_is_better || name.starts_with("yee")) return {};

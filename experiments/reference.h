@@ -1,5 +1,5 @@
-// Reference images for comparisons, kept in files that are named by what they were made from, so that
-// a second run finds them.
+// Reference images for comparisons, kept in files that are named by what they were made from, so
+// that a second run finds them.
 #pragma once
 
 #include "core/scene.h"

@@ -1,3 +1,4 @@
+#include "experiments/metrics.h"
 #include "experiments/summary.h"
 
 #include <fmt/format.h>
@@ -43,8 +44,23 @@ std::string header_line(const Json& summary, std::size_t width, bool with_ratio)
   return line;
 }
 
+// True where no sampler was measured at the time.
+bool is_outside(const Json& budget) {
+  for (const Json& row : budget["samplers"]) {
+    if (!row[std::string(metrics()[0].name)].is_null()) return false;
+  }
+  return true;
+}
+
 std::string equal_time_table(const Json& summary, const Json& scene, const Json& budget) {
   const std::size_t width = name_width(scene);
+  if (is_outside(budget)) {
+    return fmt::format(
+        "\n  at {:.3g} s of CPU time no sampler was measured, and nothing is extrapolated: give "
+        "more "
+        "or\n  wider --spp\n",
+        budget["cpu_seconds"].get<double>());
+  }
   std::string text = fmt::format(
       "\n  at {:.3g} s of CPU time: medians and ratios to {}; * 95 % interval excludes 1\n",
       budget["cpu_seconds"].get<double>(), scene["samplers"][0]["sampler"].get<std::string>());
@@ -66,7 +82,8 @@ std::string equal_time_table(const Json& summary, const Json& scene, const Json&
     text += '\n';
   }
   if (!is_complete) {
-    text += "  - not measured at this time, and nothing is extrapolated: give more or wider --spp\n";
+    text +=
+        "  - not measured at this time, and nothing is extrapolated: give more or wider --spp\n";
   }
   return text;
 }

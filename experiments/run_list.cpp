@@ -76,8 +76,8 @@ std::vector<ListedRun> list_runs(const std::string& directory) {
     throw Error(directory + ": no such folder; name one that comparisons were written to");
   }
   std::vector<ListedRun> runs;
-  fs::recursive_directory_iterator place(
-      directory, fs::directory_options::skip_permission_denied, error);
+  fs::recursive_directory_iterator place(directory, fs::directory_options::skip_permission_denied,
+                                         error);
   for (; !error && place != fs::recursive_directory_iterator(); place.increment(error)) {
     if (place->path().filename() == kJournalFile) runs.push_back(listed(place->path()));
   }

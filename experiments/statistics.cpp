@@ -86,7 +86,8 @@ std::optional<double> median_uncertainty(const std::vector<double>& values) {
   if (median <= 0.0) return {};
   std::vector<double> deviations;
   for (double value : values) deviations.push_back(std::abs(value - median));
-  // Of normal values: deviation = 1.4826 MAD, standard error of the median = 1.2533 / sqrt(n) of it.
+  // Of normal values: deviation = 1.4826 MAD, standard error of the median = 1.2533 / sqrt(n) of
+  // it.
   const double deviation = 1.4826 * quantile(deviations, 0.5);
   return 1.96 * 1.2533 * deviation / std::sqrt(double(values.size())) / median;
 }

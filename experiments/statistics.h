@@ -61,9 +61,10 @@ struct Ratio {
 
 // Geometric mean of errors[i] / base[i] over paired runs, with the 95 % interval of the bootstrap
 // over pairs: studentised, of the logarithms (Efron and Tibshirani, An Introduction to the
-// Bootstrap, 1993, section 12.5), the same for the same numbers. Plain percentiles are no 95 % for a
-// handful of seeds: where nothing differs, theirs of eight exclude 1 in a tenth of the cases, these
-// in a twentieth. With four or five pairs the interval is Student's. Empty where an error is zero.
+// Bootstrap, 1993, section 12.5), the same for the same numbers. Plain percentiles are no 95 % for
+// a handful of seeds: where nothing differs, theirs of eight exclude 1 in a tenth of the cases,
+// these in a twentieth. With four or five pairs the interval is Student's. Empty where an error is
+// zero.
 std::optional<Ratio> paired_ratio(const std::vector<double>& errors,
                                   const std::vector<double>& base);
 

@@ -27,8 +27,7 @@ constexpr std::pair<std::string_view, std::string_view> kTable[] = {
 
 Json spread_json(const std::vector<double>& values) {
   const Spread spread = spread_of(values);
-  return {
-      {"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}, {"mean", spread.mean}};
+  return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}, {"mean", spread.mean}};
 }
 
 Json run_json(const Measurement& run) {
@@ -143,7 +142,8 @@ Json equal_time_json(const CompareSettings& settings, const std::vector<Rungs>& 
   if (range) json["common_range"] = {range->low, range->high};
   std::vector<double> budgets(settings.budgets.rbegin(), settings.budgets.rend());
   if (budgets.empty() && range) budgets = time_budgets(*range);
-  for (double time : budgets) json["budgets"].push_back(budget_json(settings.samplers, rungs, time));
+  for (double time : budgets)
+    json["budgets"].push_back(budget_json(settings.samplers, rungs, time));
   return json;
 }
 

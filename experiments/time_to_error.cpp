@@ -107,8 +107,7 @@ std::vector<TimesToError> times_to_errors(const CompareSettings& settings,
 
 std::string time_sentence(const TimesToError& times, const CompareSettings& settings) {
   const std::string base = to_string(settings.samplers[0]);
-  const std::string goal =
-      fmt::format("{} {:.3g}", metrics()[times.metric].title, times.error);
+  const std::string goal = fmt::format("{} {:.3g}", metrics()[times.metric].title, times.error);
   std::vector<std::string> clauses, level, unknown;
   for (std::size_t s = 1; s < times.samplers.size(); ++s) {
     const std::string name = to_string(settings.samplers[s]);
@@ -119,8 +118,8 @@ std::string time_sentence(const TimesToError& times, const CompareSettings& sett
       level.push_back(name);
     } else {
       clauses.push_back(fmt::format("{} needs {}x the time of {} for {}, 95 % interval {}-{}", name,
-                                    factor_text(ratio->value), base, goal,
-                                    factor_text(*ratio->low), factor_text(*ratio->high)));
+                                    factor_text(ratio->value), base, goal, factor_text(*ratio->low),
+                                    factor_text(*ratio->high)));
     }
   }
   if (!level.empty()) {
@@ -128,8 +127,8 @@ std::string time_sentence(const TimesToError& times, const CompareSettings& sett
                                   fmt::join(level, ", ")));
   }
   if (!unknown.empty()) {
-    clauses.push_back(fmt::format("not in all seeds measured down to {}: {}", goal,
-                                  fmt::join(unknown, ", ")));
+    clauses.push_back(
+        fmt::format("not in all seeds measured down to {}: {}", goal, fmt::join(unknown, ", ")));
   }
   return fmt::format("{}", fmt::join(clauses, "; "));
 }

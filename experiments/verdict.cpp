@@ -126,7 +126,8 @@ Verdict judged(const CompareSettings& settings, const std::vector<Rungs>& rungs)
   const std::vector<double> shared = budgets_of(settings, rungs);
   for (std::size_t s = 0; s < samplers.size(); ++s) {
     if (is_rival(samplers[s])) continue;
-    const std::vector<double> times = shared.empty() ? budgets_of(settings, {rungs[s], rival}) : shared;
+    const std::vector<double> times =
+        shared.empty() ? budgets_of(settings, {rungs[s], rival}) : shared;
     sort_in(verdict, standing_of(to_string(samplers[s]), rungs[s], rival, times));
   }
   return verdict;
@@ -207,8 +208,9 @@ std::string further_text(const SceneComparison& scene, const CompareSettings& se
     return median_uncertainty(rung.cpu_times).value_or(0.0) > settings.timing_spread;
   });
   if (!unsteady.empty()) {
-    text += fmt::format(" The timing spread is large, medians are uncertain by more than {:.3g} %: {}.",
-                        100.0 * settings.timing_spread, unsteady);
+    text +=
+        fmt::format(" The timing spread is large, medians are uncertain by more than {:.3g} %: {}.",
+                    100.0 * settings.timing_spread, unsteady);
   }
   const std::string near = rungs_text(settings, rungs, [&](const Rung& rung) {
     return is_near_reference(scene.reference, rung, judge());
@@ -241,18 +243,18 @@ Json verdict_json(const SceneComparison& scene, const CompareSettings& settings,
   const std::vector<SamplerSpec>& samplers = settings.samplers;
   if (samplers.size() < 2) return nullptr;
   const Verdict verdict = judged(settings, rungs);
-  Json json = {{"scene", scene.scene},
-               {"depth", scene.depth},
-               {"metric", kJudge},
-               {"sentence", fmt::format("{}, depth {}, by {}: {}; {}.{}", scene.scene, scene.depth,
-                                        metrics()[judge()].title, rival_text(verdict),
-                                        best_text(verdict.best),
-                                        further_text(scene, settings, rungs))},
-               {"loses_to_random", standings_json(verdict.lost)},
-               {"beats_random", standings_json(verdict.won)},
-               {"no_difference_shown", standings_json(verdict.level)},
-               {"not_judged", verdict.unjudged},
-               {"best", nullptr}};
+  Json json = {
+      {"scene", scene.scene},
+      {"depth", scene.depth},
+      {"metric", kJudge},
+      {"sentence", fmt::format("{}, depth {}, by {}: {}; {}.{}", scene.scene, scene.depth,
+                               metrics()[judge()].title, rival_text(verdict),
+                               best_text(verdict.best), further_text(scene, settings, rungs))},
+      {"loses_to_random", standings_json(verdict.lost)},
+      {"beats_random", standings_json(verdict.won)},
+      {"no_difference_shown", standings_json(verdict.level)},
+      {"not_judged", verdict.unjudged},
+      {"best", nullptr}};
   if (verdict.best) {
     json["best"] = {{"sampler", verdict.best->sampler},
                     {"cpu_seconds", verdict.best->seconds},

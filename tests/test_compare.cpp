@@ -6,97 +6,15 @@
 #include "experiments/metrics.h"
 #include "experiments/output_file.h"
 #include "experiments/summary.h"
+#include "tests/t_compare.h"
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <sstream>
 
 namespace lockstep {
 namespace {
-
-namespace fs = std::filesystem;
-
-// A run whose errors are `error`, squares of it, or 1 less it, as the metric wants; Yee's are
-// `yee` pixels.
-Measurement made_run(int sampler, std::uint32_t seed, int spp, double cpu, double error,
-                     double yee = 1234.0) {
-  Measurement run;
-  run.sampler = sampler;
-  run.seed = seed;
-  run.spp = spp;
-  run.cpu_seconds = cpu;
-  run.wall_seconds = cpu;
-  for (const Metric& metric : metrics()) {
-    const bool squared = metric.name.find("mse") != std::string_view::npos &&
-                         metric.name.find("rmse") == std::string_view::npos;
-    const bool of_yee = metric.name.starts_with("yee");
-    const double value = squared ? error * error : of_yee ? yee : error;
-    run.errors.push_back(metric.lower_is_better ? value : 1.0 - error);
-  }
-  return run;
-}
-
-// Two samplers whose error is 1 / sqrt(spp); the second takes half the time.
-Comparison made_comparison() {
-  Comparison comparison;
-  comparison.settings.samplers = {parse_sampler("random"), parse_sampler("owen")};
-  comparison.settings.rungs = {4, 16, 64};
-  comparison.settings.seeds = 4;
-  SceneComparison scene;
-  scene.scene = scene.label = "made </script> up";
-  for (std::uint32_t seed = 0; seed < 4; ++seed) {
-    for (int spp : {4, 16, 64}) {
-      for (int s = 0; s < 2; ++s) {
-        scene.runs.push_back(made_run(s, seed, spp, spp / (s + 1.0), 1.0 / std::sqrt(double(spp))));
-      }
-    }
-  }
-  for (int s = 0; s < 2; ++s) {
-    scene.spectra.push_back({s, 16, 4, {{{0.125, 4.0}, {0.375, 1.0}}, 2.0}});
-  }
-  comparison.scenes.push_back(scene);
-  return comparison;
-}
-
-// A sampler of a made-up comparison: seconds for a sample per pixel, and the error of `seed` as a
-// factor on random's 1 / sqrt(spp).
-struct MadeSampler {
-  std::string name;
-  double cost;
-  std::function<double(int spp, std::uint32_t seed)> factor;
-};
-
-Comparison made_comparison(const std::vector<MadeSampler>& samplers, int seeds) {
-  Comparison comparison;
-  comparison.settings.rungs = {4, 16, 64};
-  comparison.settings.seeds = seeds;
-  SceneComparison scene;
-  scene.scene = scene.label = "made";
-  scene.depth = 3;
-  for (std::size_t s = 0; s < samplers.size(); ++s) {
-    comparison.settings.samplers.push_back(parse_sampler(samplers[s].name));
-    for (std::uint32_t seed = 0; seed < std::uint32_t(seeds); ++seed) {
-      for (int spp : comparison.settings.rungs) {
-        scene.runs.push_back(made_run(int(s), seed, spp, samplers[s].cost * spp,
-                                      samplers[s].factor(spp, seed) / std::sqrt(double(spp))));
-      }
-    }
-  }
-  comparison.scenes.push_back(scene);
-  return comparison;
-}
-
-double always_one(int, std::uint32_t) { return 1.0; }
-double above(int, std::uint32_t seed) { return 1.2 + 0.01 * seed; }
-double below(int, std::uint32_t seed) { return 0.6 + 0.01 * seed; }
-double about_one(int, std::uint32_t seed) { return seed % 2 ? 1.1 : 1.0 / 1.1; }
 
 std::string verdict_on(const std::vector<MadeSampler>& samplers, int seeds) {
   const auto summary = summarize(made_comparison(samplers, seeds));
@@ -111,41 +29,34 @@ std::string squeezed(std::string text) {
   return text;
 }
 
-std::vector<std::string> lines_of(const fs::path& path) {
-  std::vector<std::string> lines;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) lines.push_back(line);
-  return lines;
-}
-
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("lockstep-compare-" + std::to_string(::getpid()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-};
-
 TEST(ErrorsCsv, HeaderIsWhatScriptsRelyOn) {
   EXPECT_TRUE(errors_csv_header().starts_with(
       "scene,sampler,seed,spp,cpu_seconds,wall_seconds,rmse,relmse,relmse_trimmed"));
-  EXPECT_TRUE(errors_csv_header().ends_with(",low_pass_rmse")) << "all metrics, not the table's";
+  EXPECT_NE(errors_csv_header().find(",low_pass_rmse,"), std::string::npos)
+      << "all metrics, not the table's";
+  EXPECT_TRUE(errors_csv_header().ends_with(
+      ",depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads"));
 }
 
 TEST(ErrorsCsv, FieldsWithCommasAreQuoted) {
   EXPECT_EQ(csv_field("random"), "random");
   EXPECT_EQ(csv_field("rcs:c=4,t=0.02"), "\"rcs:c=4,t=0.02\"");
   EXPECT_EQ(csv_field("a\"b"), "\"a\"\"b\"");
-  EXPECT_EQ(errors_csv_row("cornell", "rcs:c=1,t=0", made_run(0, 3, 16, 1.5, 0.5, 7)),
-            "cornell,\"rcs:c=1,t=0\",3,16,1.5,1.5,0.5,0.25,0.25,7,7,0.5,0.5,0.25,0.5,0.5,0.5");
+  const std::string row =
+      errors_csv_row("cornell", 5, "rcs:c=1,t=0", made_run(0, 3, 16, 1.5, 0.5, 7));
+  EXPECT_TRUE(row.starts_with("cornell,\"rcs:c=1,t=0\",3,16,1.5,1.5,0.5,0.25,0.25,7,7,0.5,"))
+      << row;
+  EXPECT_NE(row.find(",0.5,5,0,0,"), std::string::npos) << "depth after the metrics: " << row;
 }
 
-TEST(ErrorsCsv, AnEarlierFileIsKept) {
+TEST(ErrorsCsv, RowsAreVisibleAtOnce) {
   const TemporaryFolder folder;
-  ErrorsCsv(folder.path.string()).append("old", "random", made_run(0, 0, 4, 1, 1));
-  ErrorsCsv csv(folder.path.string());
-  csv.append("new", "random", made_run(0, 0, 4, 1, 1));
-  ASSERT_EQ(lines_of(folder.path / "errors.csv").size(), 2u);  // visible while the file is open
-  EXPECT_TRUE(lines_of(folder.path / "errors.csv")[1].starts_with("new,"));
-  EXPECT_TRUE(lines_of(folder.path / "errors-previous.csv")[1].starts_with("old,"));
+  ErrorsCsv csv(folder.path.string(), "earlier\n");
+  csv.append("new", 1, "random", made_run(0, 0, 4, 1, 1));
+  const std::vector<std::string> lines = lines_of(folder.path / "errors.csv");
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[1], "earlier");
+  EXPECT_TRUE(lines[2].starts_with("new,"));
 }
 
 TEST(SpectraCsv, HasARowForEachRing) {
@@ -270,8 +181,10 @@ TEST(Verdict, NamesThoseThatLoseAndTheBest) {
       std::string(verdict["sentence"])
           .starts_with("made, depth 3, by FLIP: loses to random at equal time: cpt (x1.23 ["))
       << verdict["sentence"];
-  EXPECT_TRUE(std::string(verdict["sentence"])
-                  .ends_with("; no difference to random shown: rcs; best at 64 s: owen."))
+  EXPECT_TRUE(
+      std::string(verdict["sentence"])
+          .find("; no difference to random shown: rcs; best at 64 s: owen. In time: cpt ") !=
+      std::string::npos)
       << verdict["sentence"];
   ASSERT_EQ(verdict["loses_to_random"].size(), 1u);
   EXPECT_EQ(verdict["loses_to_random"][0]["sampler"], "cpt");
@@ -291,11 +204,14 @@ TEST(Verdict, IsAboutTimeNotSamples) {
 }
 
 TEST(Verdict, SaysWhereNoneLoses) {
-  EXPECT_EQ(verdict_on({{"random", 1, always_one}, {"owen", 1, below}}, 8),
-            "made, depth 3, by FLIP: none loses to random at equal time; best at 64 s: owen.");
+  EXPECT_TRUE(
+      verdict_on({{"random", 1, always_one}, {"owen", 1, below}}, 8)
+          .starts_with("made, depth 3, by FLIP: none loses to random at equal time; best at "
+                       "64 s: owen."));
   EXPECT_EQ(verdict_on({{"random", 1, always_one}, {"rcs", 1, about_one}}, 8),
             "made, depth 3, by FLIP: none loses to random at equal time; no difference to random "
-            "shown: rcs; best at 64 s: random (no difference shown to rcs).");
+            "shown: rcs; best at 64 s: random (no difference shown to rcs). In time: no difference "
+            "shown to random in the time for FLIP 0.14: rcs.");
 }
 
 TEST(Verdict, ALossAtAnyTimeCounts) {
@@ -308,14 +224,16 @@ TEST(Verdict, ALossAtAnyTimeCounts) {
 }
 
 TEST(Verdict, ClaimsNothingWithoutAnInterval) {
-  EXPECT_EQ(verdict_on({{"random", 1, always_one}, {"cpt", 1, above}}, 3),
-            "made, depth 3, by FLIP: no difference to random shown: cpt (an interval needs 4 "
-            "seeds); best at 64 s: random (no difference shown to cpt).");
+  EXPECT_EQ(
+      verdict_on({{"random", 1, always_one}, {"cpt", 1, above}}, 3),
+      "made, depth 3, by FLIP: no difference to random shown: cpt (an interval needs 4 "
+      "seeds); best at 64 s: random (no difference shown to cpt). In time: no difference shown "
+      "to random in the time for FLIP 0.16: cpt.");
 }
 
 TEST(Verdict, SaysWhatItCannotJudge) {
-  EXPECT_EQ(verdict_on({{"owen", 1, always_one}, {"cpt", 1, above}}, 8),
-            "made, depth 3, by FLIP: random was not run; best at 64 s: owen.");
+  EXPECT_TRUE(verdict_on({{"owen", 1, always_one}, {"cpt", 1, above}}, 8)
+                  .starts_with("made, depth 3, by FLIP: random was not run; best at 64 s: owen."));
   const auto zero = [](int, std::uint32_t) { return 0.0; };
   EXPECT_NE(verdict_on({{"random", 1, always_one}, {"owen", 1, zero}}, 8)
                 .find("not judged, with no time in common or an error of 0: owen"),
@@ -330,6 +248,87 @@ TEST(Verdict, FallsBackToTimesInCommonWithRandom) {
   EXPECT_NE(sentence.find("loses to random at equal time: cpt (x"), std::string::npos) << sentence;
   EXPECT_NE(sentence.find("no time is common to all, so none is best"), std::string::npos);
   EXPECT_EQ(sentence.find("not judged"), std::string::npos);
+}
+
+TEST(Summary, GivenBudgetsAreNeverExtrapolated) {
+  Comparison comparison = made_comparison();  // random covers 4 to 64 s, owen 2 to 32 s
+  comparison.settings.budgets = {2, 8, 100};
+  const auto summary = summarize(comparison);
+  const auto& budgets = summary["scenes"][0]["equal_time"]["budgets"];
+  ASSERT_EQ(budgets.size(), 3u);
+  EXPECT_EQ(budgets[0]["cpu_seconds"], 100);
+  for (int s : {0, 1}) {
+    EXPECT_TRUE(budgets[0]["samplers"][s]["rmse"].is_null());
+    EXPECT_FALSE(budgets[1]["samplers"][s]["rmse"].is_null());
+  }
+  EXPECT_TRUE(budgets[2]["samplers"][0]["rmse"].is_null()) << "random begins at 4 s";
+  EXPECT_NEAR(budgets[2]["samplers"][1]["rmse"]["median"], 0.5, 1e-9);
+  const std::string table = squeezed(results_table(summary));
+  EXPECT_NE(table.find("at 100 s of CPU time no sampler was measured"), std::string::npos) << table;
+  EXPECT_NE(table.find("random - - - - -"), std::string::npos) << table;
+}
+
+TEST(Summary, HasMeansAndWhatTheReferenceIsOffBy) {
+  Comparison comparison = made_comparison();
+  comparison.scenes[0].reference.errors = {{"flip_ldr", 0.05}, {"relmse", 0.001}};
+  const auto summary = summarize(comparison);
+  const auto& rungs = summary["scenes"][0]["samplers"][0]["rungs"];
+  EXPECT_NEAR(rungs[0]["rmse"]["mean"], 0.5, 1e-12);
+  EXPECT_EQ(rungs[1]["near_reference"].dump(), "[]") << "0.25 is above three times 0.05";
+  EXPECT_EQ(rungs[2]["near_reference"].dump(), "[\"flip_ldr\"]") << "0.125 is below";
+  EXPECT_NE(std::string(summary["verdicts"][0]["sentence"])
+                .find("Less than three times the reference's own error: random at 64 spp, owen at "
+                      "64 spp."),
+            std::string::npos);
+}
+
+TEST(TimeToError, IsReadBetweenRungs) {
+  Comparison comparison = made_comparison();  // owen has the same errors in half the time
+  comparison.settings.targets = {{"rmse", 0.25}, {"rmse", 0.2}, {"rmse", 0.01}, {"rmse", 0.6}};
+  const auto summary = summarize(comparison);
+  const auto& times = summary["scenes"][0]["time_to_error"];
+  ASSERT_EQ(times.size(), 4u);
+  EXPECT_NEAR(times[0]["samplers"][0]["cpu_seconds"], 16.0, 1e-9);
+  EXPECT_NEAR(times[1]["samplers"][0]["cpu_seconds"], 25.0, 1e-9);
+  EXPECT_NEAR(times[1]["samplers"][1]["ratio"]["value"], 0.5, 1e-9);
+  EXPECT_EQ(times[1]["samplers"][1]["ratio"]["seeds"], 4);
+  for (int target : {2, 3}) {  // never reached, and reached before the first rung
+    EXPECT_TRUE(times[target]["samplers"][1]["cpu_seconds"].is_null());
+    EXPECT_TRUE(times[target]["samplers"][1]["ratio"].is_null());
+  }
+  EXPECT_EQ(times[1]["sentence"],
+            "owen needs 0.50x the time of random for RMSE 0.2, 95 % interval 0.50-0.50");
+  EXPECT_EQ(times[2]["sentence"], "not in all seeds measured down to RMSE 0.01: owen");
+}
+
+TEST(TimeToError, TheDefaultIsTheLowestFlipThatAllReach) {
+  const auto summary =
+      summarize(made_comparison({{"random", 1, always_one}, {"owen", 1, below}}, 8));
+  const auto& times = summary["scenes"][0]["time_to_error"];
+  ASSERT_EQ(times.size(), 1u);
+  EXPECT_EQ(times[0]["metric"], "flip_ldr");
+  EXPECT_NEAR(times[0]["error"], 0.13, 1e-12) << "0.125 rounded up to two digits";
+  const std::string sentence = summary["verdicts"][0]["sentence"];
+  EXPECT_NE(sentence.find(" In time: owen needs 0.40x the time of random for FLIP 0.13, 95 % "
+                          "interval 0.3"),
+            std::string::npos)
+      << sentence;
+}
+
+TEST(Verdict, NamesTimesThatAreNotWellKnown) {
+  Comparison comparison = made_comparison();
+  for (Measurement& run : comparison.scenes[0].runs) {
+    if (run.sampler == 1 && run.spp == 16) run.cpu_seconds *= 1.0 + 0.2 * run.seed;
+  }
+  const auto sentence = [&] {
+    return std::string(summarize(comparison)["verdicts"][0]["sentence"]);
+  };
+  EXPECT_NE(sentence().find("The timing spread is large, medians are uncertain by more than 3 %: "
+                            "owen at 16 spp."),
+            std::string::npos)
+      << sentence();
+  for (int i = 0; i < 40; ++i) comparison.scenes[0].repeats.push_back({1, 0, 16, 8.0, 8.0});
+  EXPECT_EQ(sentence().find("spread"), std::string::npos) << "forty further times agree";
 }
 
 TEST(Summary, BiasedSamplersAreMarked) {
@@ -349,18 +348,6 @@ TEST(DemoPlan, FitsIntoTheTimeAtAnySpeed) {
     EXPECT_GE(plan.rungs.size(), 2u) << seconds_per_path;
     EXPECT_GE(plan.reference_spp, 8 * plan.rungs.back()) << seconds_per_path;
   }
-}
-
-CompareSettings small_settings(const fs::path& folder) {
-  CompareSettings settings;
-  settings.scenes = {"cornell"};
-  settings.samplers = {parse_sampler("random"), parse_sampler("cpt"), parse_sampler("rcs")};
-  settings.rungs = {2, 8};
-  settings.seeds = 2;
-  settings.reference_spp = 32;
-  settings.resolution = glm::ivec2(32, 32);
-  settings.directory = folder.string();
-  return settings;
 }
 
 TEST(Compare, MeasuresEveryCombinationOnce) {
