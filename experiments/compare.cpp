@@ -60,11 +60,17 @@ void check_settings(const CompareSettings& settings) {
   }
 }
 
-// The scene's name, or its file's without folder and extension, numbered where that is taken; with
-// the depth where there are several.
+// The scene's name, or its file's without folder and extension; with the folder where scenes would
+// be called alike, and with the depth where there are several. Numbered where that is taken.
 std::string unique_label(const CompareSettings& settings, const std::string& scene, int depth,
                          std::set<std::string>& taken) {
-  std::string stem = file_name_safe(fs::path(scene).stem().string());
+  const fs::path path(scene);
+  const auto alike = std::count_if(
+      settings.scenes.begin(), settings.scenes.end(),
+      [&](const std::string& other) { return fs::path(other).stem() == path.stem(); });
+  const std::string folder = path.parent_path().filename().string();
+  std::string stem = file_name_safe((alike > 1 && !folder.empty() ? folder + '-' : std::string()) +
+                                    path.stem().string());
   if (settings.depths.size() > 1) stem += fmt::format("-depth{}", depth);
   std::string label = stem;
   for (int n = 2; !taken.insert(label).second; ++n) label = fmt::format("{}-{}", stem, n);

@@ -90,11 +90,13 @@ std::string find_scene(const std::string& scene, const CompareOptions& options) 
     if (builtin.name == scene) return scene;
   }
   std::error_code error;
-  if (options.scenes_folder.empty() || fs::exists(scene, error)) return scene;
+  if (fs::exists(scene, error)) return scene;
   const fs::path path = fs::path(options.scenes_folder) / scene;
-  if (fs::exists(path, error)) return path.string();
-  throw Error(fmt::format("{}: no such scene, nor is it in {}; name its folder with --scenes-dir",
-                          scene, options.scenes_folder));
+  if (!options.scenes_folder.empty() && fs::exists(path, error)) return path.string();
+  const std::string where =
+      options.scenes_folder.empty() ? "" : fmt::format(", nor is it in {}", options.scenes_folder);
+  throw Error(fmt::format("{}: no such scene{}; name the folder that it is in with --scenes-dir",
+                          scene, where));
 }
 
 CompareSettings compare_settings(const CompareOptions& options) {

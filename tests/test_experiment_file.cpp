@@ -43,7 +43,7 @@ TEST_F(ExperimentFile, MistakesAreNamedWithTheirLine) {
   expect_one_line_with(complaint("quiet = 1\n"), "true or false is expected here");
   expect_one_line_with(complaint("samplers = []\n"), "e.toml:1: samplers: the list is empty");
   expect_one_line_with(complaint("[scenes]\na = 1\n"), "e.toml:1: scenes: text in quotes");
-  expect_one_line_with(complaint("seeds = 4\nspp = [4,\n"), "e.toml:3: ");
+  expect_one_line_with(complaint("seeds = 4\nspp = [4,\n"), "e.toml:2: ");
   expect_one_line_with(complaint("seeds = 4\nseeds = 5\n"), "e.toml:2: ");
   expect_one_line_with(complaint("output = 1979-05-27\n"), "not a date");
   expect_one_line_with(message_of([&] { read_experiment(path("none.toml")); }),

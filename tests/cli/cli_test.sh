@@ -166,6 +166,80 @@ has out/summary.json '"verdicts"'
 has out/summary.json '"equal_time"'
 has out/report.html 'cornell-reference.png'
 
+# A comparison that is killed at any moment goes on with --resume, to the same errors and images.
+again="compare cornell --samplers random,cpt --spp 1,2,4 --seeds 3 --reference-spp 64 --resolution 24x24
+  --threads 1 --timing-repeats 0 --quiet"
+untimed() { cut -d, -f1-4,7-19,22 "$1/errors.csv"; }
+expect 0 '' $again -o whole
+for delay in 0.05 0.15 0.3 0.6; do
+  "$program" $again -o killed --resume >/dev/null 2>&1 &
+  sleep $delay
+  kill -KILL $! 2>/dev/null
+  wait $! 2>/dev/null
+done
+expect 0 '' $again -o killed --resume
+[ "$(untimed killed)" = "$(untimed whole)" ] || fail "a killed comparison has other errors"
+for file in spectra.csv cornell-random-4spp.png cornell-cpt-1spp.png cornell-reference.png; do
+  cmp -s killed/$file whole/$file || fail "a killed comparison has another $file"
+done
+
+# A signal finishes the render under way, writes the report and says how to go on.
+"$program" compare cornell --samplers random,cpt --spp 1,2,4 --seeds 10000 --reference-spp 64 \
+  --resolution 24x24 --quiet -o signal >stdout 2>stderr &
+for i in $(seq 200); do
+  [ -s signal/errors.csv ] && [ "$(wc -l <signal/errors.csv)" -gt 3 ] && break
+  sleep 0.1
+done
+kill -INT $!
+wait $!
+[ $? = 1 ] || fail "an interrupted comparison does not end with status 1"
+grep -q '^lockstep: stopped by the user; .*--resume' stderr || fail "interrupted: $(cat stderr)"
+has signal/summary.json '"complete": false'
+has signal/report.html 'cornell-reference.png'
+expect 0 'signal .* stopped +[0-9]+/60000 +cornell: random,cpt' runs .
+expect 0 '"state": "complete"' runs whole --json
+expect 1 'nosuch' runs nosuch
+
+# A disk that is full: one error, and what was written stays.
+(ulimit -f 24 && "$program" $again -o full >stdout 2>stderr)
+[ $? = 1 ] || fail "a full disk does not end with status 1"
+grep -q "journal.jsonl: cannot be written: File too large" stderr || fail "a full disk: $(cat stderr)"
+[ "$(wc -l <stderr)" = 1 ] || fail "a full disk is not one line: $(cat stderr)"
+expect 0 '' $again -o full --resume
+[ "$(untimed full)" = "$(untimed whole)" ] || fail "a comparison on a full disk has other errors"
+
+# Experiments as files: the command line overrides them, mistakes have their line.
+cat >e.toml <<'TOML'
+scenes = "cornell"
+samplers = ["random", "cpt"]
+spp = [1, 4]
+seeds = 2
+resolution = "24x24"
+reference_spp = 64
+time_budgets = [1e-9]
+quiet = true
+output = "toml"
+TOML
+expect 0 'nothing is extrapolated' compare e.toml --seeds 1
+[ "$(wc -l <toml/errors.csv)" = 5 ] || fail "the command line does not override the file"
+has toml/experiment.toml '^seeds = 1$'
+has toml/summary.json 'spp = \[1, 4\]'
+expect 0 '' compare toml/experiment.toml --resume
+for mistake in 'sede = 4:no key .sede.' 'seeds = 0:not a number from 1' 'seeds = "x":a number is expected' \
+  'threads = 1.5:threads' 'samplers = 4:text in quotes' 'spp = [1,:error|expected|end'; do
+  { echo; echo "${mistake%%:*}"; } >bad.toml
+  expect 1 "bad.toml:[2-4]: .*(${mistake#*:})" compare bad.toml -o bad
+done
+expect 1 'none.toml' compare none.toml
+expect 1 'none.pbrt.*--scenes-dir' compare none.pbrt --samplers random -o bad --scenes-dir .
+expect 2 'flip_ldr' compare cornell --samplers random -o bad --targets nosuch=1
+expect 2 'targets' compare cornell --samplers random -o bad --targets rmse
+expect 2 'time-budgets' compare cornell --samplers random -o bad --time-budgets 1,-2
+expect 2 'depth' compare cornell --samplers random -o bad --depth 1,x
+expect 2 'SCENE' compare --samplers random -o bad
+expect 2 'output' compare cornell --samplers random
+[ -e bad ] && fail "a mistake left a folder"
+
 if [ "$failures" != 0 ]; then
   echo "$failures failed"
   exit 1
