@@ -42,7 +42,7 @@ function imageCrops(section, scene, viewer) {
     const methods = viewer.state.methods;
     const pictures = await Promise.all(methods.map(viewer.picture));
     if (methods !== viewer.state.methods) return;
-    const room = box.node().clientWidth / methods.length - 8;
+    const room = box.node().clientWidth / methods.length - 12;
     const shownWidth = Math.floor(Math.max(cropWidths[0], Math.min(cropWidths[1], room)));
     box.html("");
     const table = box.append("table");

@@ -16,6 +16,10 @@ function imageChoices(scene, index) {
   const counts = new Set(index.runs.map((run) => run.spp));
   Array.from(counts).sort((a, b) => b - a).forEach((spp) => choices.push(
     { text: `${spp} samples per pixel`, pick: (s, i) => withImage(s, i).find((r) => r.spp === spp) }));
+  choices.forEach((choice) => {
+    const here = scene.samplers.filter((s, i) => choice.pick(s, i)).length;
+    if (here < scene.samplers.length) choice.text += ` (${here} of ${scene.samplers.length} samplers in this page)`;
+  });
   // Choices of the same images are one.
   const seen = new Set();
   return choices.filter((choice) => {

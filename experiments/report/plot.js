@@ -34,7 +34,7 @@ function linearAxis(values) {
   return { scale: scale, log: false, ticks: (domain) => d3.scale.linear().domain(domain).ticks(6) };
 }
 
-const margin = { left: 74, right: 14, top: 8, bottom: 46 };
+const margin = { left: 84, right: 14, top: 8, bottom: 46 };
 const hoverReach = 36;  // pixels
 let plotCount = 0;
 
@@ -80,7 +80,7 @@ function plot(parent, spec) {
     });
     axes.append("rect").attr({ class: "frame", width: width, height: height });
     axes.append("text").attr({ class: "label", x: width / 2, y: height + 39, "text-anchor": "middle" }).text(spec.xLabel);
-    axes.append("text").attr({ class: "label", transform: `translate(-56,${height / 2}) rotate(-90)`, "text-anchor": "middle" })
+    axes.append("text").attr({ class: "label", transform: `translate(-70,${height / 2}) rotate(-90)`, "text-anchor": "middle" })
       .text(spec.yLabel);
   }
 
