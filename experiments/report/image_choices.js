@@ -20,12 +20,7 @@ function imageChoices(scene, index) {
     const here = scene.samplers.filter((s, i) => choice.pick(s, i)).length;
     if (here < scene.samplers.length) choice.text += ` (${here} of ${scene.samplers.length} samplers in this page)`;
   });
-  // Choices of the same images are one.
-  const seen = new Set();
-  return choices.filter((choice) => {
-    const key = scene.samplers.map((s, i) => (choice.pick(s, i) || {}).spp).join();
-    return !seen.has(key) && seen.add(key);
-  });
+  return choices;
 }
 
 // What the viewer's tabs are for a choice: the reference, then each sampler that has an image.

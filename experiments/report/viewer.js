@@ -1,21 +1,5 @@
 // The image viewer: the reference and all methods at one zoom, place, exposure and kind of error map.
 
-// The viewer that keys are for: the one last touched, or else the first in sight.
-const viewers = [];
-let activeViewer = null;
-const inSight = (viewer) => {
-  const box = viewer.node.getBoundingClientRect();
-  return box.bottom > 80 && box.top < window.innerHeight - 80;
-};
-document.addEventListener("keydown", (event) => {
-  const form = event.target.closest && event.target.closest("input, select, textarea");
-  if (event.ctrlKey || event.altKey || event.metaKey || (form && form.type !== "range")) return;
-  if (form && event.key.startsWith("Arrow")) return;
-  const viewer = activeViewer && inSight(activeViewer) ? activeViewer : viewers.find(inSight);
-  const arrows = event.key.startsWith("Arrow") && !(viewer && viewer.node.contains(event.target));
-  if (viewer && !arrows && viewer.key(event.key)) event.preventDefault();
-});
-
 const largestZoom = 64;
 
 function imageViewer(section, scene, index) {
@@ -26,9 +10,14 @@ function imageViewer(section, scene, index) {
     zoom: 0, x: width / 2, y: height / 2, cursor: null };  // zoom 0: all of it; x, y: the middle in pixels
 
   section.append("h3").text("Images");
+  if (typeof DecompressionStream === "undefined") {
+    section.append("p").attr("class", "note").text(
+      "This browser cannot unpack the images in this page (Chromium 80, Firefox 113 and Safari 16.4 can). They are in files beside it.");
+    return;
+  }
   section.append("p").attr("class", "muted").text(
     `First seed. Keys: 1 to 9 choose an image (0 is the tenth), R goes to the reference and back, E to the next kind of map, ` +
-    `[ and ] change the exposure, + and − zoom, F shows all. Drag to move; the wheel zooms where Ctrl is held or the viewer has ` +
+    `[ and ] (or comma and full stop) change the exposure, + and − zoom, F shows all. Drag to move; the wheel zooms where Ctrl is held or the viewer has ` +
     `the focus.` + (index.factor > 1 ? ` To keep this page small, ${index.factor} × ${index.factor} pixels are averaged to one ` +
     "here; the EXR files beside the page have all." : "") +
     (index.left_out ? ` ${index.left_out} more renders are in files beside the page.` : ""));
@@ -92,51 +81,11 @@ function imageViewer(section, scene, index) {
     showValues();
   }
 
-  // Values of the pixel under the cursor.
+  // Values of the pixel under the cursor; an answer that comes late is dropped.
   async function showValues() {
-    const method = state.methods[state.at], p = state.cursor;
+    const method = state.methods[state.at], pixel = state.cursor;
     const of = await decodedMethod(method, index);
-    if (!p || method !== state.methods[state.at] || p !== state.cursor) {
-      if (!p) readout.text("Point at a pixel for its values.");
-      return;
-    }
-    const i = p.y * width + p.x;
-    const rgb = (halves) => [0, 1, 2].map((c) => number(floatOfHalf[halves[3 * i + c]] / scene.exposure)).join("  ");
-    readout.html("");
-    const add = (name, text) => { const part = readout.append("span"); part.append("b").text(name); part.append("span").text(` ${text}`); };
-    add("pixel", `${p.x * index.factor}, ${p.y * index.factor}`);
-    add(method.name, rgb(of.radiance));
-    if (!of.reference) return;
-    add("reference", rgb(of.reference));
-    const error = luminance(of.radiance, 3 * i) - luminance(of.reference, 3 * i);
-    add("luminance error", `${error > 0 ? "+" : ""}${number(error / scene.exposure)}`);
-    if (of.flip) add("FLIP", (of.flip[i] / 255).toFixed(3));
-    if (of.weights) add("weight", (of.weights[i] / 255).toFixed(3));
-  }
-
-  // The colours of an error map and the values at their ends.
-  function drawScale() {
-    const view = state.view, end = view.scale === "fixed" ? 1 : 1 / (Math.pow(2, state.stops) * (view.scale === "share" ? 1 : scene.exposure));
-    bar.html("").style("display", view.scale ? null : "none");
-    if (!view.scale) return;
-    const both = view.ends === "both";
-    const colours = d3.range(17).map((k) => k / 16).map((t) => (view.grey ? [255 * t, 255 * t, 255 * t] : both ? signedColour(2 * t - 1) : magmaColour(t)));
-    bar.append("span").text(both ? `−${number(end)}` : "0");
-    bar.append("span").attr("class", "ramp").style("background", `linear-gradient(to right, ${colours.map((c) => `rgb(${c.map(Math.round).join()})`).join()})`);
-    bar.append("span").text(number(end));
-    bar.append("span").attr("class", "muted").text({ luminance: "difference of luminance, brighter than the reference in orange",
-      radiance: "absolute difference, mean of RGB", share: "absolute difference over the reference's luminance + 0.01 of white",
-      fixed: view.grey ? "weight of each pixel: 0 shares all, 1 is independent" : "LDR-FLIP as in errors.csv" }[view.scale]);
-  }
-
-  function drawCaption() {
-    const method = state.methods[state.at];
-    caption.html("");
-    caption.append("b").text(method.name);
-    const lacks = (state.view.name === "weights" && !method.ids.weights) || (state.view.scale && method.reference);
-    const lines = lacks ? [`no ${state.view.title.toLowerCase()} of this one: its image is shown`, ...method.lines] : method.lines;
-    caption.selectAll("div").data(lines).enter().append("div").attr("class", "muted").text((d) => d);
-    if (method.command) caption.append("code").text(method.command);
+    if (method === state.methods[state.at] && pixel === state.cursor) drawValues(readout, scene, index, method, of, pixel);
   }
 
   function mark() {
@@ -144,8 +93,8 @@ function imageViewer(section, scene, index) {
     viewSelect.property("value", state.view.name);
     exposure.property("value", state.stops);
     stops.text(`${state.stops > 0 ? "+" : ""}${state.stops} stops`);
-    drawScale();
-    drawCaption();
+    drawScale(bar, scene, state);
+    drawCaption(caption, state);
   }
   function refresh(cropsToo) {
     mark();
@@ -238,45 +187,12 @@ function imageViewer(section, scene, index) {
   const crops = imageCrops(section, scene, { state, width, height, picture, redraw: draw,
     goTo: (x, y) => { state.zoom = Math.max(zoom(), 4 * fit()); state.x = x; state.y = y; canvas.style.touchAction = "none"; draw(); } });
 
-  // Pointers: one moves the image, two zoom it; any shows the values beneath.
-  const pointers = new Map();
-  canvas.addEventListener("pointerdown", (event) => {
-    pointers.set(event.pointerId, event);
-    activeViewer = viewer;
-    if (pointers.size === 1) state.cursor = pixelAt(event);
-    showValues();
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const last = pointers.get(event.pointerId);
-    state.cursor = pixelAt(event);
-    if (!last) return void showValues();
-    canvas.setPointerCapture(event.pointerId);
-    const other = [...pointers.values()].find((p) => p.pointerId !== event.pointerId);
-    pointers.set(event.pointerId, event);
-    if (!other) return void (state.zoom ? move(event.clientX - last.clientX, event.clientY - last.clientY) : showValues());
-    const rect = canvas.getBoundingClientRect(), apart = (a) => Math.hypot(a.clientX - other.clientX, a.clientY - other.clientY);
-    zoomBy(apart(event) / Math.max(1, apart(last)),
-      { x: (event.clientX + other.clientX) / 2 - rect.left, y: (event.clientY + other.clientY) / 2 - rect.top });
-  });
-  ["pointerup", "pointercancel"].forEach((name) => canvas.addEventListener(name, (event) => pointers.delete(event.pointerId)));
-  canvas.addEventListener("pointerleave", (event) => {
-    if (event.pointerType !== "mouse" || pointers.size) return;
-    state.cursor = null;
-    showValues();
-  });
-  canvas.addEventListener("wheel", (event) => {
-    if (!event.ctrlKey && document.activeElement !== canvas) return;
-    event.preventDefault();
-    const rect = canvas.getBoundingClientRect();
-    zoomBy(Math.pow(2, -Math.sign(event.deltaY) / 3), { x: event.clientX - rect.left, y: event.clientY - rect.top });
-  }, { passive: false });
-  box.node().addEventListener("focusin", () => { activeViewer = viewer; });
-
   const actions = {
     r: () => choose(state.at === 0 ? state.before : 0),
     e: () => look(offered[(offered.indexOf(state.view) + 1) % offered.length]),
     f: showAll,
     "[": () => expose(state.stops - 1), "]": () => expose(state.stops + 1),
+    ",": () => expose(state.stops - 1), ".": () => expose(state.stops + 1),
     "+": () => zoomBy(2), "=": () => zoomBy(2), "-": () => zoomBy(0.5),
     ArrowLeft: () => move(40, 0), ArrowRight: () => move(-40, 0), ArrowUp: () => move(0, 40), ArrowDown: () => move(0, -40),
   };
@@ -290,6 +206,15 @@ function imageViewer(section, scene, index) {
     },
   };
   viewers.push(viewer);
+  box.node().addEventListener("focusin", () => { activeViewer = viewer; });
+  followPointers(canvas, {
+    isZoomed: () => Boolean(state.zoom), move, zoomBy,
+    touched: () => { activeViewer = viewer; },
+    point(event) {
+      state.cursor = event && pixelAt(event);
+      showValues();
+    },
+  });
 
   function shape() {
     const room = canvas.clientWidth;

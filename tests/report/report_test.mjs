@@ -179,6 +179,31 @@ const tests = {
     assert.ok(Math.abs(mean - Number(row.flip_ldr)) < 4 * deviation / Math.sqrt(values.length), `${mean} against ${row.flip_ldr}`);
   },
 
+  // The page's half floats, as a display shows them, are the 8-bit previews that the program writes.
+  async "images are those of the files"(page) {
+    const first = summary.scenes[0], rungs = first.samplers.map((s) => s.rungs.at(-1));
+    await scene(page, 0).locator(".viewer select").first().selectOption({ label: `${summary.spp.at(-1)} samples per pixel` });
+    const files = [first.reference.png, ...rungs.map((rung) => rung.png)];
+    for (const [i, file] of files.entries()) {
+      await page.keyboard.press(String(i + 1));
+      await waitForShown(page, 0, ["reference", ...samplers][i]);
+      const download = page.waitForEvent("download");
+      await scene(page, 0).getByRole("button", { name: "Save the image" }).click();
+      const images = [await (await download).path(), `${folder}/${file}`].map((path) => readFileSync(path).toString("base64"));
+      const farthest = await page.evaluate(async (images) => {
+        const [a, b] = await Promise.all(images.map(async (text) => {
+          const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+          const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+          const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+          context.drawImage(bitmap, 0, 0);
+          return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
+        }));
+        return a.length === b.length ? a.reduce((most, v, k) => Math.max(most, Math.abs(v - b[k])), 0) : "another size";
+      }, images);
+      assert.ok(farthest <= 1, `${file}: ${farthest}`);
+    }
+  },
+
   async "crops stand beside the reference"(page) {
     const crops = scene(page, 0).locator(".crops tbody tr");
     assert.equal(await crops.count(), 3);
