@@ -99,9 +99,8 @@ function imageCrops(section, scene, viewer) {
       draw();
       viewer.redraw();
     },
-    async chooseThree(index) {
-      const methods = await Promise.all(viewer.state.methods.filter((m) => m.ids.flip).map((m) => decodedMethod(m, index)));
-      if (methods.length) places = differingBlocks(methods.map((m) => m.flip), viewer.width, viewer.height, size, 3);
+    choose(maps, count) {
+      places = maps.length ? differingBlocks(maps, viewer.width, viewer.height, size, count) : [];
     },
     // Where the crops are, on the viewer's canvas.
     outline(context, corner) {

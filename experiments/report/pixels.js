@@ -83,21 +83,34 @@ function coloured(count, colourOf) {
   return rgba;
 }
 
-// The ways to look at a method's image; `gain` is 2 to the power of the stops, and `of` has the method's
-// and the reference's radiance and the method's maps. Null where there is nothing to show.
+// The ways to look at a method's image. `stops` names the brightness that the reader sets, of images or of
+// kinds of maps; `gain` is 2 to its power, and `of` has the method's and the reference's radiance and the
+// method's maps. Null where there is nothing to show.
 const views = [
-  { name: "image", title: "Image", paint: (of, gain) => {
+  { name: "image", title: "Image", stops: "image", paint: (of, gain) => {
     const codes = displayCodes(gain);
     return coloured(of.radiance.length / 3, (i) => [codes[of.radiance[3 * i]], codes[of.radiance[3 * i + 1]], codes[of.radiance[3 * i + 2]]]);
   } },
-  { name: "signed", title: "Signed error", scale: "luminance", ends: "both", paint: (of, gain) => of.reference &&
+  { name: "signed", title: "Signed error", stops: "error", scale: "luminance", ends: "both", paint: (of, gain) => of.reference &&
     coloured(of.radiance.length / 3, (i) => signedColour(gain * (luminance(of.radiance, 3 * i) - luminance(of.reference, 3 * i)))) },
-  { name: "absolute", title: "Absolute error", scale: "radiance", paint: (of, gain) => of.reference &&
+  { name: "absolute", title: "Absolute error", stops: "error", scale: "radiance", paint: (of, gain) => of.reference &&
     coloured(of.radiance.length / 3, (i) => magmaColour(gain * absoluteError(of.radiance, of.reference, 3 * i))) },
-  { name: "relative", title: "Relative error", scale: "share", paint: (of, gain) => of.reference &&
+  { name: "relative", title: "Relative error", stops: "relative", scale: "share", paint: (of, gain) => of.reference &&
     coloured(of.radiance.length / 3, (i) => magmaColour(gain * absoluteError(of.radiance, of.reference, 3 * i) /
       (Math.abs(luminance(of.reference, 3 * i)) + 0.01))) },
   { name: "flip", title: "FLIP", scale: "fixed", paint: (of) => of.flip && coloured(of.flip.length, (i) => magmaColour(of.flip[i] / 255)) },
   { name: "weights", title: "Weights", scale: "fixed", grey: true, paint: (of) => of.weights &&
     coloured(of.weights.length, (i) => [of.weights[i], of.weights[i], of.weights[i]]) },
 ];
+
+// Stops for maps of errors of these methods, one scale for all: what only one pixel in fifty is above
+// shows in full.
+function errorStops(methods) {
+  const errors = [];
+  methods.forEach(({ radiance, reference }) => {
+    const step = 3 * Math.max(1, Math.floor(radiance.length / 3 / 4000));
+    for (let i = 0; i + 2 < radiance.length; i += step) errors.push(absoluteError(radiance, reference, i));
+  });
+  const large = d3.quantile(errors.sort((a, b) => a - b), 0.98);
+  return large > 0 ? Math.round(-2 * Math.log2(large)) / 2 : 0;
+}

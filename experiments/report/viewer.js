@@ -1,12 +1,13 @@
 // The image viewer: the reference and all methods at one zoom, place, exposure and kind of error map.
 
 const largestZoom = 64;
+const stopsRange = [-8, 14];
 
 function imageViewer(section, scene, index) {
   const choices = imageChoices(scene, index);
   if (!choices.length) return;
   const [width, height] = index.size;
-  const state = { choice: choices[0], methods: [], at: 0, before: 0, view: views[0], stops: 0,
+  const state = { choice: choices[0], methods: [], at: 0, before: 0, view: views[0], stops: { image: 0, error: 0, relative: 0 },
     zoom: 0, x: width / 2, y: height / 2, cursor: null };  // zoom 0: all of it; x, y: the middle in pixels
 
   section.append("h3").text("Images");
@@ -32,11 +33,11 @@ function imageViewer(section, scene, index) {
   // One canvas of image size for each method, painted again when view or exposure change.
   const painted = new Map();
   async function picture(method) {
-    const key = `${method.ids.radiance} ${state.view.name} ${state.view.scale === "fixed" ? 0 : state.stops}`;
+    const view = state.view, gain = (kind) => Math.pow(2, state.stops[kind] || 0);
+    const key = [method.ids.radiance, view.name, gain(view.stops), gain("image")].join(" ");
     if (painted.has(key)) return painted.get(key);
-    const gain = Math.pow(2, state.stops), view = state.view;
     const of = await decodedMethod(method, index);
-    const rgba = view.paint(of, gain) || views[0].paint(of, gain);
+    const rgba = view.paint(of, gain(view.stops)) || views[0].paint(of, gain("image"));
     const picture = document.createElement("canvas");
     picture.width = width;
     picture.height = height;
@@ -91,8 +92,10 @@ function imageViewer(section, scene, index) {
   function mark() {
     tabs.selectAll("button").attr("aria-pressed", (d, i) => String(i === state.at));
     viewSelect.property("value", state.view.name);
-    exposure.property("value", state.stops);
-    stops.text(`${state.stops > 0 ? "+" : ""}${state.stops} stops`);
+    const set = state.stops[state.view.stops];
+    exposureName.text(state.view.scale ? "Brightness of the map " : "Exposure ");
+    exposure.property("value", set || 0).property("disabled", set === undefined);
+    stops.text(set === undefined ? "fixed" : `${set > 0 ? "+" : ""}${set} stops`);
     drawScale(bar, scene, state);
     drawCaption(caption, state);
   }
@@ -113,9 +116,10 @@ function imageViewer(section, scene, index) {
     refresh(true);
   }
   function expose(stops) {
-    state.stops = Math.max(-8, Math.min(8, stops));
+    if (state.view.stops) state.stops[state.view.stops] = Math.max(stopsRange[0], Math.min(stopsRange[1], stops));
     refresh(true);
   }
+  const exposeBy = (stops) => expose(state.stops[state.view.stops] + stops);
   // Zooms by a factor; the pixel at a place on the canvas stays where it is.
   function zoomBy(factor, at) {
     const before = corner();
@@ -172,8 +176,9 @@ function imageViewer(section, scene, index) {
   const viewSelect = controls.append("label").text("as ").append("select").attr("class", "view");
   viewSelect.selectAll("option").data(offered).enter().append("option").attr("value", (v) => v.name).text((v) => v.title);
   viewSelect.on("change", () => look(offered.find((v) => v.name === viewSelect.property("value"))));
-  const exposureLabel = controls.append("label").text("Exposure ");
-  const exposure = exposureLabel.append("input").attr({ type: "range", min: -8, max: 8, step: 0.5, value: 0 });
+  const exposureLabel = controls.append("label");
+  const exposureName = exposureLabel.append("span");
+  const exposure = exposureLabel.append("input").attr({ type: "range", min: stopsRange[0], max: stopsRange[1], step: 0.5, value: 0 });
   const stops = exposureLabel.append("output");
   exposure.on("input", () => expose(Number(exposure.property("value"))));
   const tools = controls.append("span").attr("class", "tools");
@@ -191,8 +196,8 @@ function imageViewer(section, scene, index) {
     r: () => choose(state.at === 0 ? state.before : 0),
     e: () => look(offered[(offered.indexOf(state.view) + 1) % offered.length]),
     f: showAll,
-    "[": () => expose(state.stops - 1), "]": () => expose(state.stops + 1),
-    ",": () => expose(state.stops - 1), ".": () => expose(state.stops + 1),
+    "[": () => exposeBy(-1), "]": () => exposeBy(1),
+    ",": () => exposeBy(-1), ".": () => exposeBy(1),
     "+": () => zoomBy(2), "=": () => zoomBy(2), "-": () => zoomBy(0.5),
     ArrowLeft: () => move(40, 0), ArrowRight: () => move(-40, 0), ArrowUp: () => move(0, 40), ArrowDown: () => move(0, -40),
   };
@@ -227,7 +232,11 @@ function imageViewer(section, scene, index) {
     setMethods();
     shape();
     mark();
-    crops.chooseThree(index).then(() => refresh(true));
+    Promise.all(state.methods.filter((m) => !m.reference).map((m) => decodedMethod(m, index))).then((decoded) => {
+      state.stops.error = errorStops(decoded);
+      crops.choose(decoded.map((of) => of.flip), 3);
+      refresh(true);
+    });
     window.addEventListener("resize", () => { shape(); draw(); });
   }, { rootMargin: "400px" });
   observer.observe(box.node());

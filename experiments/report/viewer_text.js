@@ -27,7 +27,7 @@ function drawScale(bar, scene, state) {
   bar.html("").style("display", view.scale ? null : "none");
   if (!view.scale) return;
   // The largest value that is told apart, in units of the map.
-  const end = view.scale === "fixed" ? 1 : 1 / (Math.pow(2, state.stops) * (view.scale === "share" ? 1 : scene.exposure));
+  const end = view.scale === "fixed" ? 1 : 1 / (Math.pow(2, state.stops[view.stops]) * (view.scale === "share" ? 1 : scene.exposure));
   const both = view.ends === "both";
   const colourAt = (t) => (view.grey ? [255 * t, 255 * t, 255 * t] : both ? signedColour(2 * t - 1) : magmaColour(t));
   const ramp = d3.range(17).map((k) => `rgb(${colourAt(k / 16).map(Math.round).join()})`);
