@@ -145,7 +145,9 @@ void fill_perturbed(const SamplerState& state, const SampleBatch& batch, const S
   for (int i = 0; i < batch.count; i += W) {
     const U pixel = load<U>(batch.pixel + i), sample = load<U>(batch.sample + i);
     Fractions<U> point = shared_point<W>(state, batch, points, pixel, sample);
-    const V w = state.weights ? gather(state.weights, as_int(pixel)) : V(state.weight);
+    // What is not a number counts as 0. A packet must not move lanes that would stay if alone.
+    const V w = clamp(state.weights ? gather(state.weights, as_int(pixel)) : V(state.weight),
+                      V(0.0f), V(1.0f));
     if (any(w > V(0.0f))) {
       point = moved<W>(state.mix, point, w, P::offset(state, pixel, sample, pair));
     }

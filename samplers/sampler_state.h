@@ -15,7 +15,7 @@ struct SamplerState {
   SequenceId sequence{};
   PerturbationId perturbation{};
   Mix mix = Mix::Add;
-  float weight = 0.0f;             // w where there is no map
+  float weight = 0.0f;             // w where there is no map; beyond [0, 1] the nearer end
   const float* weights = nullptr;  // w per pixel, row by row
   int width = 1;                   // of the image; pixels are numbered y * width + x
   int pixel_bits = 1;              // of a pixel's x and y

@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace lockstep {
@@ -53,6 +54,26 @@ TEST(Offsets, AMapGivesEachPixelItsWeight) {
     for (std::uint32_t pixel = 0; pixel < 3; ++pixel) {
       const SamplerState same = weighted("cpt:" + move, map[pixel], {3, 1, 16});
       EXPECT_EQ(draw(mapped, pixel, 2, 0, 64), draw(same, pixel, 2, 0, 64)) << move;
+    }
+  }
+}
+
+// Whoever shares a packet with them.
+TEST(Offsets, WeightsBeyondTheRangeCountAsItsEnds) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float inf = std::numeric_limits<float>::infinity();
+  const std::vector<float> odd{-1.0f, nan, -inf, 0.0f, 1.5f, 1e30f, inf, 1.0f};
+  const std::vector<float> ends{0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 1.0f, 1.0f};
+  for (const std::string& move : all_moves()) {
+    SamplerState state = weighted("cpt:" + move, 0.5f, {8, 1, 16});
+    Couples all;
+    for (std::uint32_t i = 0; i < 64; ++i) all.add(i % 8, i / 8);
+    for (const int width : {1, 4, 8, 16}) {
+      const Kernel& kernel = find_kernel(choose_isa(), width);
+      state.weights = ends.data();
+      const Values expected = draw_batch(kernel, state, all, 2);
+      state.weights = odd.data();
+      EXPECT_EQ(draw_batch(kernel, state, all, 2), expected) << move << ' ' << width;
     }
   }
 }
