@@ -6,6 +6,7 @@
 #include "core/mitsuba/reader.h"
 #include "core/obj.h"
 #include "core/ply.h"
+#include "core/scene_warnings.h"
 
 #include <algorithm>
 #include <array>
@@ -111,21 +112,7 @@ SceneFormat file_format(const std::string& path) {
               "files are understood");
 }
 
-}  // namespace
-
-std::string_view format_name(SceneFormat format) {
-  constexpr std::string_view names[] = {"built in", "pbrt", "Mitsuba XML",
-                                        "glTF 2.0", "OBJ",  "PLY"};
-  return names[int(format)];
-}
-
-SceneFormat scene_format(const std::string& name) {
-  if (find_builtin(name)) return SceneFormat::Builtin;
-  check_file(name);
-  return file_format(name);
-}
-
-SceneDescription read_scene(const std::string& name) {
+SceneDescription read_format(const std::string& name) {
   switch (scene_format(name)) {
     case SceneFormat::Builtin:
       return find_builtin(name)->make();
@@ -141,6 +128,27 @@ SceneDescription read_scene(const std::string& name) {
       break;
   }
   return read_ply_scene(name);
+}
+
+}  // namespace
+
+std::string_view format_name(SceneFormat format) {
+  constexpr std::string_view names[] = {"built in", "pbrt", "Mitsuba XML",
+                                        "glTF 2.0", "OBJ",  "PLY"};
+  return names[int(format)];
+}
+
+SceneFormat scene_format(const std::string& name) {
+  if (find_builtin(name)) return SceneFormat::Builtin;
+  check_file(name);
+  return file_format(name);
+}
+
+SceneDescription read_scene(const std::string& name) {
+  SceneDescription scene = read_format(name);
+  const std::string warning = precision_warning(scene);
+  if (!warning.empty()) scene.warnings.push_back(warning);
+  return scene;
 }
 
 }  // namespace lockstep
