@@ -29,6 +29,15 @@ nlohmann::ordered_json stages_json(const RenderStats& stats) {
   return json;
 }
 
+// Where the first samples were that were not finite; the seed is the render's.
+nlohmann::ordered_json bad_samples_json(const RenderStats& stats) {
+  auto json = nlohmann::ordered_json::array();
+  for (const BadSample& b : stats.bad_samples) {
+    json.push_back({{"pixel", {b.x, b.y}}, {"sample", b.sample}});
+  }
+  return json;
+}
+
 // What is left of the peak is the program itself, its libraries and working memory.
 nlohmann::ordered_json memory_json(const Scene& scene, const RenderStats& stats) {
   const SceneMemory memory = scene.memory();
@@ -72,6 +81,7 @@ nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Sc
           {"zero_weights", stats.zero_weights},
           {"biased", !sampler.unbiased()},
           {"nonfinite", stats.nonfinite},
+          {"nonfinite_samples", bad_samples_json(stats)},
           {"features", feature_names(scene.features())},
           {"left_out", feature_names(all_features & ~scene.features())},
           {"memory_bytes", memory_json(scene, stats)},
