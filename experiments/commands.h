@@ -14,6 +14,7 @@ void add_render_command(CLI::App& program, RunCommand& run);
 void add_compare_command(CLI::App& program, RunCommand& run);
 void add_demo_command(CLI::App& program, RunCommand& run);
 void add_profile_command(CLI::App& program, RunCommand& run);
+void add_stress_command(CLI::App& program, RunCommand& run);
 void add_metrics_command(CLI::App& program, RunCommand& run);
 void add_runs_command(CLI::App& program, RunCommand& run);
 void add_info_command(CLI::App& program, RunCommand& run);

@@ -71,6 +71,7 @@ int main(int argc, char** argv) {
   lockstep::add_compare_command(program, run);
   lockstep::add_demo_command(program, run);
   lockstep::add_profile_command(program, run);
+  lockstep::add_stress_command(program, run);
   lockstep::add_metrics_command(program, run);
   lockstep::add_runs_command(program, run);
   lockstep::add_info_command(program, run);

@@ -37,7 +37,7 @@ small="--resolution 32x24 --spp 4 --quiet"
 # Help and lists.
 expect 0 'lockstep [0-9]+\.[0-9]+' --version
 expect 0 'compare' --help
-for command in render compare demo metrics info scenes samplers; do
+for command in render compare demo stress metrics info scenes samplers; do
   expect 0 'Usage: lockstep' "$command" --help
 done
 expect 0 '^cornell ' scenes
