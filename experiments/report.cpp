@@ -3,7 +3,9 @@
 #include "experiments/display_image.h"
 #include "experiments/series_style.h"
 
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace lockstep {
 namespace {
@@ -26,8 +28,9 @@ std::string embeddable(const nlohmann::ordered_json& json) {
 nlohmann::ordered_json magma_codes() {
   Image ramp(256, 1, 1);
   for (int x = 0; x < ramp.width; ++x) *ramp.at(x, 0) = float(x) / float(ramp.width - 1);
-  nlohmann::ordered_json codes;
-  for (float value : magma(ramp).pixels) codes.push_back(display_code(value));
+  const Image colours = magma(ramp);
+  std::vector<std::uint8_t> codes(colours.pixels.size());
+  display_codes(colours.pixels.data(), int(codes.size()), codes.data());
   return codes;
 }
 

@@ -207,8 +207,11 @@ StressFinding lights_at_corners(const StressSetting&) {
        {Vec3<float>(0.0f), Vec3<float>(0.5f, 1.0f, 0.5f), Vec3<float>(1.0f, 1.3f, 0.0f),
         Vec3<float>(1.0f, 1.0f, 0.0f), Vec3<float>(0.0f, 2.0f, 0.0f), Vec3<float>(1e6f)}) {
     for (const float choice : kCorners) {
-      const std::int32_t light = choose_light(data.lights, choice);
-      bad += light < 0 || light >= data.lights.count;
+      for (const float y : kCorners) {
+        const LightChoice<float> chosen = choose_light(data.lights, Vec2<float>(choice, y));
+        bad += chosen.index < 0 || chosen.index >= data.lights.count;
+        bad += !(chosen.u.x >= 0.0f && chosen.u.x < 1.0f);
+      }
       for (std::int32_t i = 0; i < data.lights.count; ++i) {
         for (const float y : kCorners) {
           const auto s = sample_light<float>(data, i, p, frame, Vec2<float>(choice, y));
