@@ -152,7 +152,9 @@ LOCKSTEP_INLINE LightSample<V> sample_sphere_light(const LightRow<V>& light, con
   const Vec3<V> local = uniform_cone(u, max(one_minus_cos, V(0.0f)));
   const V sin2 = fma(local.x, local.x, local.y * local.y);
   const V half_chord = sqrt(max(V(0.0f), fma(radius, radius, -(distance2 * sin2))));
-  const V outside_distance = fma(centre_distance, local.z, -half_chord);
+  // Ends before the surface: this close to it, rounding would let the sphere hide itself.
+  const V outside_distance =
+      max(V(0.0f), fma(centre_distance, local.z, -fma(V(0x1p-18f), radius, half_chord)));
 
   const Vec3<V> n = uniform_sphere(u);
   const Vec3<V> to = fma(radius, n, to_centre);

@@ -64,6 +64,15 @@ LOCKSTEP_INLINE IntOf<V> medium_beyond(const Bsdf&, const Surface<V>&, IntOf<V>,
   return medium;
 }
 
+// How far nothing may be in the way. Ends before the light by more than what rounding makes of the
+// distance and of the light's coordinates, which are taken to be those of the surface plus the
+// distance: else far from the origin tilted lights would hide themselves.
+template <class V>
+LOCKSTEP_INLINE V shadow_distance(const Surface<V>& surface, V distance) {
+  const V rounding = V(offset_scale) * max_component(abs(surface.origin));
+  return max(fma(distance, V(1.0f - 0x1p-12f), -rounding), V(0.0f));
+}
+
 // Light sampling: a shadow ray for every lane that may receive something.
 template <FeatureMask F, class Bsdf, class V>
 LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>& surface,
@@ -96,7 +105,7 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
   const Packing<width_of<V>> lanes(lit);
   pack3(lanes, out.origin, out.count, origin_towards<Bsdf>(surface, wi));
   pack3(lanes, out.direction, out.count, s.wi);
-  lanes.store(out.distance + out.count, s.distance * V(1.0f - 0x1p-12f));
+  lanes.store(out.distance + out.count, shadow_distance(surface, s.distance));
   pack3(lanes, out.radiance, out.count, radiance);
   lanes.store(out.path + out.count, load<I>(queue.path + i));
   out.count += lanes.count();

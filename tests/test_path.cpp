@@ -6,6 +6,7 @@
 #include "tests/t_statistics.h"
 
 #include <gtest/gtest.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <array>
 #include <cmath>
@@ -345,6 +346,30 @@ TEST(RayOffset, IsSmallFarFromTheOriginAndFromTheCamera) {
   EXPECT_NEAR(mean_at(glm::vec3(8192.0f, 0.0f, 0.0f), 1.0f) / expected, 1.0, 2e-2);
   EXPECT_NEAR(mean_at(glm::vec3(0.0f, 8192.0f, 0.0f), 1.0f) / expected, 1.0, 2e-2);
   EXPECT_NEAR(mean_at(glm::vec3(0.0f), 20000.0f) / expected, 1.0, 1e-2);
+}
+
+// Points on tilted lights are rounded to coordinates off their plane: shadow rays end before it.
+// Rays leave 0.005 above the floor here.
+TEST(RayOffset, DoesNotHideTiltedLightsFarFromTheOrigin) {
+  SceneDescription d = lit_floor();
+  add_lamp(d, 0.5f, 0.5f, 1.0f, {glm::vec3(5.0f)});
+  const glm::mat3 tilt(glm::rotate(glm::mat4(1.0f), 0.7f, glm::vec3(0.6f, 0.0f, 0.8f)));
+  const glm::vec3 place(8000.0f, -5000.0f, 3000.0f);
+  for (Shape& shape : d.shapes) {
+    for (glm::vec3& p : std::get<TriangleMesh>(shape.geometry).positions) p = tilt * p + place;
+  }
+  look_closely(d, tilt * glm::vec3(3, 2, 1) + place, place);
+  const double expected = 5.0 * double(albedo) * rectangle_form_factor(0.5, 0.5, 1.0);
+  expect_mean(channel_means(build(std::move(d)), {.sampler = "owen", .spp = 64}), expected, 0.012);
+}
+
+// A lamp that touches the floor beside the point in view, 2e-4 away from it.
+TEST(DirectLight, OfASphereThatTouchesTheFloor) {
+  SceneDescription d = lit_floor(DiffuseMaterial{glm::vec3(albedo)}, {0, 0.03f, 3}, 4.0f);
+  add_sphere(d, {0.02f, 1, 0}, 1.0f, lamp(d), Emission{glm::vec3(5.0f)});
+  d.camera.fov_degrees = 1e-4f;
+  expect_mean(channel_means(build(std::move(d)), {.spp = 64}),
+              5.0 * double(albedo) / std::pow(1.0004, 1.5), 5e-3);
 }
 
 // What a light's row says is the probability with which samples of 24 bits choose it.
