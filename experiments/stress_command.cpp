@@ -41,8 +41,6 @@ StressPlan plan_of(const StressOptions& options) {
   plan.seeds = options.seeds > 0 ? options.seeds : options.quick ? kQuickSeeds : kFullSeeds;
   plan.threads = options.threads;
   plan.folder = in_folder(options, "inputs");
-  // Judged at the width whose kernels are also specialised; the others must repeat its bits.
-  plan.widths = {8, 1, 16};
   return plan;
 }
 

@@ -10,6 +10,7 @@ namespace lockstep {
 namespace {
 
 std::string csv_quoted(std::string_view text) {
+  if (text.find_first_of(",\"\n") == text.npos) return std::string(text);
   std::string out = "\"";
   for (const char c : text) {
     out += c;

@@ -87,7 +87,7 @@ expect 1 'a.exr' metrics a.exr b.exr
 # A render, its statistics and its weight map.
 expect 0 '' render cornell -o a.exr $small --sampler rcs --seed 3 --stats a.json --weights w.exr
 for key in scene sampler width isa threads seed spp depth resolution render_seconds cpu_seconds \
-  paths rays camera bounce shadow paths_per_cpu_second lanes_active nonfinite features left_out \
+  paths rays camera bounce shadow paths_per_cpu_second lanes_active nonfinite nonfinite_samples features left_out \
   peak_memory_bytes version lanes pilot_spp mean_weight zero_weights biased traversal packets \
   stage_cpu_seconds sampling film memory_bytes geometry embree; do
   has a.json "\"$key\": "
@@ -144,6 +144,15 @@ has prof/profile.html 'id="data"'
 expect 2 'no port' render cornell -o v.exr --display localhost:x
 expect 0 'v.exr: 1 spp' render cornell -o v.exr --spp 1 --resolution 8x8 --display 127.0.0.1:1
 [ "$(grep -c 'warning: --display' stderr)" = 1 ] || fail "--display: $(cat stderr)"
+
+# Extreme cases.
+expect 2 'output' stress
+expect 2 'no case matches' stress -o stress --case nosuch
+expect 0 'no-light' stress --list
+expect 0 '2 cases: 1 right, 1 unsupported, 0 vague, 0 wrong' stress -o stress --quick --quiet \
+  --case 'no*light' --threads 2
+has stress/stress.csv '^no-light,light,[^,]+,16,strata,0,0,'
+has stress/stress.html 'nothing to render'
 
 # Metrics.
 expect 0 '^rmse +0$' metrics a.exr a.exr
