@@ -4,94 +4,13 @@
 #pragma once
 
 #include "core/environment_map_lookup.h"
+#include "core/flat_light.h"
 #include "core/frame.h"
-#include "core/hash.h"
 #include "core/light_description.h"
-#include "core/scene_data.h"
 #include "core/simd_atan.h"
-#include "core/spherical_rectangle.h"
-#include "core/warp.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
-
-template <class V>
-struct LightSample {
-  Vec3<V> wi;
-  V distance;  // infinite for the environment
-  Vec3<V> radiance;
-  V pdf;  // 0: nothing arrives from there; the light's probability where it is a single direction
-  MaskOf<V> delta = MaskOf<V>(false);  // a single direction, which no other technique finds: only
-                                       // set where the scene has such lights
-};
-
-template <class V>
-struct LightRow {
-  Vec3<V> corner, edge1, edge2, normal, radiance;
-  V area, probability, side, outline;
-  V kind;  // a LightKind as a number
-
-  LOCKSTEP_INLINE MaskOf<V> is(LightKind k) const { return kind == V(float(int(k))); }
-};
-
-template <class I>
-LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {
-  const auto row = [&](int column) LOCKSTEP_LAMBDA {
-    return gather_rows(t.rows + column, index * I(light_stride));
-  };
-  const auto a = row(0), b = row(4), c = row(8), d = row(12), e = row(16);
-  return {{a.x, a.y, a.z},
-          {b.x, b.y, b.z},
-          {c.x, c.y, c.z},
-          {d.x, d.y, d.z},
-          {e.x, e.y, e.z},
-          a.w,
-          b.w,
-          c.w,
-          e.w,
-          d.w};
-}
-
-template <class V>
-struct LightChoice {
-  IntOf<V> index;
-  Vec2<V> u;  // for a point on the light: independent of the choice
-};
-
-// The light whose interval of the cumulative distribution holds u.x; what is left of u.x within the
-// interval goes on as a number in [0, 1), so that one point stratifies both the choice and the
-// place on the light. u.x has 24 digits: those that the interval has used up come from the last 12
-// of u.y, which u.y keeps.
-template <class V>
-LOCKSTEP_INLINE LightChoice<V> choose_light(const LightTable& t, Vec2<V> u) {
-  using I = IntOf<V>;
-  I first(0);
-  V below(0.0f);
-  for (int step = int(std::bit_floor(unsigned(t.count))); step > 0; step /= 2) {
-    const I next = first + I(step);
-    const I probe = select(next < I(t.count), next, I(t.count));
-    const V start = gather(t.cdf, probe);
-    const MaskOf<V> beyond = (start <= u.x) & (next < I(t.count));
-    first = select(beyond, next, first);
-    below = select(beyond, start, below);
-  }
-  const V digits = u.y * V(0x1p12f);
-  const V rest = fma(digits - floor(digits), V(0x1p-24f), u.x - below);
-  const V x = rest / (gather(t.cdf, first + I(1)) - below);
-  return {first, {min(x, V(one_minus_epsilon)), u.y}};
-}
-
-// Density of a point on a flat light seen at `distance` under `cos_light`.
-template <class V>
-LOCKSTEP_INLINE V solid_angle_pdf(V distance, V cos_light, V area) {
-  return distance * distance / (cos_light * area);
-}
-
-// True where light leaves the side that `cos_light` = normal . (light to lit point) looks at.
-template <class V>
-LOCKSTEP_INLINE MaskOf<V> emits(V side, V cos_light) {
-  return (side == V(0.0f)) | (side * cos_light > V(0.0f));
-}
 
 // 1 - cos of the half angle under which a sphere is seen; negative from inside it.
 template <class V>
@@ -99,42 +18,6 @@ LOCKSTEP_INLINE V sphere_cone(V distance2, V radius) {
   const V sin2 = radius * radius / distance2;
   const V cos_max = sqrt(max(V(0.0f), V(1.0f) - sin2));
   return select(sin2 < V(1.0f), sin2 / (V(1.0f) + cos_max), V(-1.0f));
-}
-
-// A light that is a rectangle as p sees it; of solid angle 0 where it is sampled by area.
-template <class V>
-LOCKSTEP_INLINE SphericalRectangle<V> seen_rectangle(const LightRow<V>& light, const Vec3<V>& p) {
-  const MaskOf<V> rectangle = light.is(LightKind::Parallelogram) & (light.outline > V(0.0f));
-  SphericalRectangle<V> s =
-      spherical_rectangle(light.corner - p, light.edge1, light.edge2, light.normal);
-  s.solid_angle = select(rectangle & (s.solid_angle >= V(min_solid_angle)), s.solid_angle, V(0.0f));
-  return s;
-}
-
-// The masks say which lanes have a light of that kind. Rectangles by solid angle, others by area.
-template <class V>
-LOCKSTEP_INLINE LightSample<V> sample_flat_light(const LightRow<V>& light, MaskOf<V> quad,
-                                                 MaskOf<V> triangle, MaskOf<V> disk,
-                                                 const Vec3<V>& p, Vec2<V> u) {
-  Vec2<V> st = u;
-  V solid_angle(0.0f);
-  if (any(quad)) {
-    const SphericalRectangle<V> seen = seen_rectangle(light, p);
-    solid_angle = seen.solid_angle;
-    st = select<V>(solid_angle > V(0.0f), sample_spherical_rectangle(seen, u), st);
-  }
-  if (any(triangle)) st = select<V>(triangle, uniform_triangle(u), st);
-  if (any(disk)) st = select<V>(disk, uniform_polygon(u, light.outline), st);
-  const Vec3<V> to = light.corner + fma(st.x, light.edge1, light.edge2 * st.y) - p;
-  const V distance2 = dot(to, to);
-  const V distance = sqrt(distance2);
-  const Vec3<V> wi = to * (V(1.0f) / distance);
-  const V cos_light = -dot(light.normal, wi);
-  const V density = select(solid_angle > V(0.0f), V(1.0f) / solid_angle,
-                           solid_angle_pdf(distance, abs(cos_light), light.area));
-  const V pdf = light.probability * density;
-  const MaskOf<V> lit = emits(light.side, cos_light) & (distance2 > V(0.0f)) & is_finite(pdf);
-  return {wi, distance, light.radiance, select(lit, pdf, V(0.0f))};
 }
 
 // From outside: uniform in the cone that the sphere fills. From inside: uniform over its area.
@@ -295,10 +178,8 @@ LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, con
   }
   V cos_light = -dot(light.normal, wi);
   V pdf = solid_angle_pdf(distance, max(abs(cos_light), V(1e-20f)), light.area);
-  if (needs<F>(scene, Feature::QuadLights)) {
-    const V solid_angle = seen_rectangle(light, p).solid_angle;
-    pdf = select(solid_angle > V(0.0f), V(1.0f) / solid_angle, pdf);
-  }
+  const V solid_angle = flat_light_solid_angle<V, F>(scene, light, p);
+  pdf = select(solid_angle > V(0.0f), V(1.0f) / solid_angle, pdf);
   if (needs<F>(scene, Feature::SphereLights) && any(sphere)) {
     const Vec3<V> to_centre = light.corner - p;
     const V one_minus_cos = sphere_cone(dot(to_centre, to_centre), light.area);

@@ -95,10 +95,6 @@ LOCKSTEP_INLINE V spherical_rectangle_x(const SphericalRectangle<V>& s, V u) {
   return min(max(x, s.x0), s.x0 + s.width);
 }
 
-// Below this, grazing views would move samples by more than 2e-3 of the solid angle, and uniform
-// area is as good from afar.
-inline constexpr float min_solid_angle = 1e-2f;
-
 // Point of the rectangle as shares of its edges; pdf 1 / solid angle.
 template <class V>
 LOCKSTEP_INLINE Vec2<V> sample_spherical_rectangle(const SphericalRectangle<V>& s, Vec2<V> u) {

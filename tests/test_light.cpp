@@ -111,6 +111,8 @@ std::vector<LightCase> cases() {
       disk("disk of few corners", {0.2f, 0.3f, -1.0f}, 5.0f),
       triangle("triangle", {0.2f, 0.3f, -1.0f}),
       triangle("triangle, near", {-0.3f, 0.0f, 1.9f}),
+      triangle("triangle, far", {5.0f, 20.0f, -30.0f}),
+      triangle("triangle, grazing", {3.0f, 1.0f, 1.7f}),
       triangle("triangle, from behind", {0.1f, 0.4f, 3.0f}, -1.0f),
       sphere("sphere", 1.0f, 2.0f, 1.0f),
       sphere("sphere, far", 0.01f, 50.0f, 1.0f),
@@ -384,6 +386,41 @@ TEST(SphericalRectangle, SharesOfTheSolidAngleAreThoseOfU) {
           const double x = r.x0 + st.x * (r.x1 - r.x0), y = r.y0 + st.y * (r.y1 - r.y0);
           ASSERT_NEAR(r.solid_angle(x) / whole, double(u.x), 2e-3) << what;
           ASSERT_NEAR(r.share_of_line(x, y), double(u.y), 2e-3) << what;
+        }
+      }
+    }
+  }
+}
+
+// As for rectangles: u.x is the solid angle's share of the part a, b, c' in which c' lies on the
+// edge a c, and u.y the place between b and c'.
+TEST(SphericalTriangle, SharesOfTheSolidAngleAreThoseOfU) {
+  for (const float height : {0.001f, 0.01f, 0.1f, 1.0f, 10.0f, 10000.0f}) {
+    for (const glm::vec3 corner : {glm::vec3(-0.3f, -0.3f, 0.0f), glm::vec3(0.0f),
+                                   glm::vec3(0.5f, -0.1f, 0.0f), glm::vec3(-2.0f, 1.0f, 0.0f)}) {
+      for (const glm::vec3 edge : {glm::vec3(0.2f, 1.0f, 0.0f), glm::vec3(9.0f, 1.0f, 0.3f)}) {
+        const auto seen = spherical_triangle<float>(corner + glm::vec3(0.0f, 0.0f, height),
+                                                    {1.0f, 0.0f, 0.0f}, edge);
+        if (!(seen.solid_angle >= min_solid_angle)) continue;
+        if (!(seen.solid_angle <= max_triangle_angle)) continue;
+        const glm::dvec3 a(seen.to_corner), b = a + glm::dvec3(seen.edge1),
+                                            c = a + glm::dvec3(seen.edge2);
+        const double whole = triangle_solid_angle(a, b, c);
+        const std::string what =
+            "height " + std::to_string(height) + ", corner " + std::to_string(corner.x);
+        EXPECT_NEAR(double(seen.solid_angle) / whole, 1.0, 2e-4) << what;
+        for (std::uint32_t i = 0; i < 500; ++i) {
+          const Vec2<float> u = uniform2(i, 82);
+          const glm::dvec2 st(sample_spherical_triangle(seen, u));
+          ASSERT_TRUE(st.x >= 0.0 && st.y >= 0.0 && st.x + st.y <= 1.0 + 1e-6) << what;
+          const glm::dvec3 w =
+              glm::normalize(a + st.x * glm::dvec3(seen.edge1) + st.y * glm::dvec3(seen.edge2));
+          glm::dvec3 c1 = glm::normalize(glm::cross(glm::cross(b, w), glm::cross(a, c)));
+          if (glm::dot(c1, glm::normalize(a) + glm::normalize(c)) < 0.0) c1 = -c1;
+          const auto gap = [](glm::dvec3 v, glm::dvec3 to) { return glm::dot(v - to, v - to); };
+          const glm::dvec3 n = glm::normalize(b);
+          ASSERT_NEAR(triangle_solid_angle(a, b, c1) / whole, double(u.x), 2e-3) << what;
+          ASSERT_NEAR(gap(n, w) / gap(n, c1), double(u.y), 2e-3) << what;
         }
       }
     }
