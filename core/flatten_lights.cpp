@@ -75,6 +75,10 @@ std::optional<Light> as_disk(const TriangleMesh& mesh, const Emission& emission)
   const glm::vec3 centre = p[mesh.triangles[0].x];
   const auto corner = [&](std::size_t i) { return p[mesh.triangles[i % n].y]; };
   const auto angle = [&](std::size_t i) { return 2.0f * glm::pi<float>() * float(i) / float(n); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const glm::uvec3 t = mesh.triangles[i];
+    if (p[t.x] != centre || p[t.z] != corner(i + 1)) return std::nullopt;
+  }
   glm::vec3 x(0.0f), y(0.0f);
   for (std::size_t i = 0; i < n; ++i) {
     x += 2.0f / float(n) * std::cos(angle(i)) * (corner(i) - centre);
@@ -82,7 +86,6 @@ std::optional<Light> as_disk(const TriangleMesh& mesh, const Emission& emission)
   }
   const float tolerance = 1e-5f * (glm::length(x) + glm::length(y));
   for (std::size_t i = 0; i < n; ++i) {
-    if (p[mesh.triangles[i].x] != centre || p[mesh.triangles[i].z] != corner(i + 1)) return {};
     const glm::vec3 expected = centre + std::cos(angle(i)) * x + std::sin(angle(i)) * y;
     if (!(glm::distance(corner(i), expected) <= tolerance)) return std::nullopt;
   }

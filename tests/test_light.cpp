@@ -583,9 +583,15 @@ TEST(Light, DegenerateViewsAreMasked) {
                     {0.0f, 1.0f, 0.0f},
                     0.0f,
                     0.0f};
-  LightCase on_it = edge_on;
+  LightCase on_it = edge_on, inside = edge_on;
   on_it.corner = glm::vec3(0.0f);
-  for (const LightCase& c : {edge_on, on_it}) {
+  inside.corner = glm::vec3(-0.5f, -0.25f, 0.0f);
+  LightCase rectangle_edge_on = edge_on, rectangle_on_it = on_it, rectangle_inside = inside;
+  rectangle_edge_on.outline = rectangle_on_it.outline = rectangle_inside.outline = 1.0f;
+  LightCase triangle_inside = inside;
+  triangle_inside.kind = LightKind::Triangle;
+  for (const LightCase& c : {edge_on, on_it, inside, rectangle_edge_on, rectangle_on_it,
+                             rectangle_inside, triangle_inside}) {
     const LightScene scene({c});
     for (const Vec2<float> u : {Vec2<float>(0.0f, 0.0f), Vec2<float>(0.5f, 0.25f)}) {
       EXPECT_EQ(sample_case(scene, c, u).pdf, 0.0f) << c.name;
