@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 namespace lockstep {
@@ -49,17 +50,36 @@ std::optional<double> common_error(const std::vector<Rungs>& samplers, std::size
   return rounded < high ? rounded : low;
 }
 
-TimesToError times_to(const std::vector<Rungs>& rungs, std::size_t metric, double error) {
+std::size_t seeds_of(const Rungs& rungs) {
   std::set<std::uint32_t> seeds;
-  for (const auto& [spp, rung] : rungs[0]) {
+  for (const auto& [spp, rung] : rungs) {
     for (const Measurement* run : rung.runs) seeds.insert(run->seed);
   }
-  TimesToError times{metric, error, seeds.size(), {}};
-  for (const Rungs& own : rungs) {
-    times.samplers.push_back(
-        {time_at(median_curve(own, metric), error), time_ratio(own, rungs[0], metric, error)});
+  return seeds.size();
+}
+
+// The first of the samplers is what the others are measured against.
+TimesToError times_to(const std::vector<Rungs>& rungs, const std::vector<std::size_t>& samplers,
+                      std::size_t metric, double error) {
+  TimesToError times{metric, error, seeds_of(rungs[0]), {}};
+  for (std::size_t s : samplers) {
+    times.samplers.push_back({s, time_at(median_curve(rungs[s], metric), error),
+                              time_ratio(rungs[s], rungs[0], metric, error)});
   }
   return times;
+}
+
+// For errors that all have in common or, where there is none, each with the first.
+std::vector<TimesToError> times_to_common_errors(const std::vector<Rungs>& rungs,
+                                                 const std::vector<std::size_t>& all,
+                                                 std::size_t metric) {
+  if (const auto error = common_error(rungs, metric)) return {times_to(rungs, all, metric, *error)};
+  std::vector<TimesToError> pairs;
+  for (std::size_t s = 1; s < rungs.size(); ++s) {
+    const std::optional<double> error = common_error({rungs[0], rungs[s]}, metric);
+    if (error) pairs.push_back(times_to(rungs, {0, s}, metric, *error));
+  }
+  return pairs;
 }
 
 // Two digits behind the point; two digits in all where that would be too few.
@@ -80,11 +100,11 @@ Json times_json(const TimesToError& times, const CompareSettings& settings) {
                {"error", times.error},
                {"sentence", time_sentence(times, settings)},
                {"samplers", Json::array()}};
-  for (std::size_t s = 0; s < times.samplers.size(); ++s) {
-    Json entry = {{"sampler", to_string(settings.samplers[s])},
+  for (const TimeOfSampler& time : times.samplers) {
+    Json entry = {{"sampler", to_string(settings.samplers[time.sampler])},
                   {"cpu_seconds", nullptr},
-                  {"ratio", ratio_json(times.samplers[s].ratio)}};
-    if (times.samplers[s].cpu_seconds) entry["cpu_seconds"] = *times.samplers[s].cpu_seconds;
+                  {"ratio", ratio_json(time.ratio)}};
+    if (time.cpu_seconds) entry["cpu_seconds"] = *time.cpu_seconds;
     json["samplers"].push_back(entry);
   }
   return json;
@@ -94,14 +114,15 @@ Json times_json(const TimesToError& times, const CompareSettings& settings) {
 
 std::vector<TimesToError> times_to_errors(const CompareSettings& settings,
                                           const std::vector<Rungs>& rungs) {
+  std::vector<std::size_t> samplers(rungs.size());
+  std::iota(samplers.begin(), samplers.end(), std::size_t(0));
+  if (settings.targets.empty()) {
+    return times_to_common_errors(rungs, samplers, metric_named(kDefaultMetric));
+  }
   std::vector<TimesToError> all;
   for (const ErrorTarget& target : settings.targets) {
-    all.push_back(times_to(rungs, metric_named(target.metric), target.error));
+    all.push_back(times_to(rungs, samplers, metric_named(target.metric), target.error));
   }
-  if (!settings.targets.empty()) return all;
-  const std::size_t metric = metric_named(kDefaultMetric);
-  const std::optional<double> error = common_error(rungs, metric);
-  if (error) all.push_back(times_to(rungs, metric, *error));
   return all;
 }
 
@@ -109,9 +130,10 @@ std::string time_sentence(const TimesToError& times, const CompareSettings& sett
   const std::string base = to_string(settings.samplers[0]);
   const std::string goal = fmt::format("{} {:.3g}", metrics()[times.metric].title, times.error);
   std::vector<std::string> clauses, level, unknown;
-  for (std::size_t s = 1; s < times.samplers.size(); ++s) {
-    const std::string name = to_string(settings.samplers[s]);
-    const std::optional<Ratio>& ratio = times.samplers[s].ratio;
+  for (const TimeOfSampler& time : times.samplers) {
+    if (time.sampler == 0) continue;
+    const std::string name = to_string(settings.samplers[time.sampler]);
+    const std::optional<Ratio>& ratio = time.ratio;
     if (!ratio || ratio->pairs < times.seeds) {
       unknown.push_back(name);
     } else if (!ratio->low || (*ratio->low <= 1.0 && *ratio->high >= 1.0)) {

@@ -12,6 +12,7 @@
 namespace lockstep {
 
 struct TimeOfSampler {
+  std::size_t sampler = 0;            // its place in the settings
   std::optional<double> cpu_seconds;  // of the median error; empty where it was not measured
   std::optional<Ratio> ratio;         // of times to the first sampler's, paired by seed
 };
@@ -19,12 +20,13 @@ struct TimeOfSampler {
 struct TimesToError {
   std::size_t metric = 0;  // index into metrics()
   double error = 0.0;
-  std::size_t seeds = 0;  // that were rendered
-  std::vector<TimeOfSampler> samplers;
+  std::size_t seeds = 0;                // that were rendered
+  std::vector<TimeOfSampler> samplers;  // the first is what the others are measured against
 };
 
 // For the settings' targets or, where there are none, for the lowest FLIP that every seed of every
-// sampler comes down to, rounded up to two digits. Times are read between rungs, never beyond them:
+// sampler comes down to, rounded up to two digits; where all have none in common, for the lowest
+// that each has in common with the first sampler. Times are read between rungs, never beyond them:
 // a sampler whose first rung is better already has none.
 std::vector<TimesToError> times_to_errors(const CompareSettings& settings,
                                           const std::vector<Rungs>& rungs);

@@ -200,10 +200,12 @@ std::string rungs_text(const CompareSettings& settings, const std::vector<Rungs>
 std::string further_text(const SceneComparison& scene, const CompareSettings& settings,
                          const std::vector<Rungs>& rungs) {
   std::string text;
-  for (const TimesToError& times : times_to_errors(settings, rungs)) {
-    const std::string sentence = time_sentence(times, settings);
-    if (!sentence.empty()) text += fmt::format(" In time: {}.", sentence);
+  std::vector<std::string> times;
+  for (const TimesToError& to : times_to_errors(settings, rungs)) {
+    const std::string sentence = time_sentence(to, settings);
+    if (!sentence.empty()) times.push_back(sentence);
   }
+  if (!times.empty()) text += fmt::format(" In time: {}.", fmt::join(times, "; "));
   const std::string unsteady = rungs_text(settings, rungs, [&](const Rung& rung) {
     return median_uncertainty(rung.cpu_times).value_or(0.0) > settings.timing_spread;
   });

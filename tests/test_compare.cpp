@@ -315,6 +315,25 @@ TEST(TimeToError, TheDefaultIsTheLowestFlipThatAllReach) {
       << sentence;
 }
 
+TEST(TimeToError, PairsHaveTheirOwnErrorWhereAllHaveNone) {
+  // cpt begins below where owen ends; each overlaps with random.
+  const auto low = [](int, std::uint32_t) { return 0.26; };  // 0.13 to 0.0325
+  const auto high = [](int, std::uint32_t) { return 1.2; };  // 0.6 to 0.15
+  const auto summary = summarize(
+      made_comparison({{"random", 1, always_one}, {"owen", 1, high}, {"cpt", 1, low}}, 8));
+  const auto& times = summary["scenes"][0]["time_to_error"];
+  ASSERT_EQ(times.size(), 2u);
+  EXPECT_EQ(times[0]["samplers"][1]["sampler"], "owen");
+  EXPECT_NEAR(times[0]["error"], 0.15, 1e-12);
+  EXPECT_NEAR(times[0]["samplers"][1]["ratio"]["value"], 1.44, 1e-9);
+  EXPECT_EQ(times[1]["samplers"][1]["sampler"], "cpt");
+  EXPECT_NE(std::string(summary["verdicts"][0]["sentence"])
+                .find(" In time: owen needs 1.44x the time of random for FLIP 0.15, 95 % interval "
+                      "1.44-1.44; cpt needs 0.068x"),
+            std::string::npos)
+      << summary["verdicts"][0]["sentence"];
+}
+
 TEST(Verdict, NamesTimesThatAreNotWellKnown) {
   Comparison comparison = made_comparison();
   for (Measurement& run : comparison.scenes[0].runs) {
