@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // A string of gnuplot.
-std::string quoted(std::string text) {
+std::string gnuplot_string(std::string text) {
   std::string result = "'";
   for (char c : text) {
     if (c == '\'') result += '\'';
@@ -60,7 +60,7 @@ std::string errors_data(const Json& summary, const Json& scene) {
   }
   text += "\n# median over seeds, and 5 % and 95 % quantiles\n";
   for (const Json& sampler : scene["samplers"]) {
-    text += "# " + quoted(sampler["sampler"]) + "\n";
+    text += "# " + gnuplot_string(sampler["sampler"]) + "\n";
     for (const Json& rung : sampler["rungs"]) {
       text += fmt::format("{} {}", rung["spp"].get<int>(),
                           number_or_missing(rung["cpu_seconds"]["median"]));
@@ -130,7 +130,7 @@ std::vector<double> rung_values(const Json& scene, Get get) {
 }
 
 // What a figure of errors has across: a column of the data.
-struct Across {
+struct HorizontalAxis {
   std::string name, label;
   int column;
   std::string ticks;
@@ -138,11 +138,12 @@ struct Across {
 
 // One plot for each metric of the table.
 std::string errors_script(const Json& summary, const Json& scene, const std::string& label,
-                          const Across& across) {
+                          const HorizontalAxis& across) {
   const std::string stem = fmt::format("{}-error-{}", label, across.name);
-  std::string text = preamble(fmt::format("{}: error against {}", label, across.label), stem) +
-                     fmt::format("data = {}\nset xtics {}\nset xlabel {}\n",
-                                 quoted(label + "-errors.dat"), across.ticks, quoted(across.label));
+  std::string text =
+      preamble(fmt::format("{}: error against {}", label, across.label), stem) +
+      fmt::format("data = {}\nset xtics {}\nset xlabel {}\n", gnuplot_string(label + "-errors.dat"),
+                  across.ticks, gnuplot_string(across.label));
   int column = 3;
   for (const Json& metric : summary["table"]) {
     const std::string name = metric["name"];
@@ -151,7 +152,8 @@ std::string errors_script(const Json& summary, const Json& scene, const std::str
         log_ticks(rung_values(scene, [&](const Json& rung) { return rung[name]["median"]; }));
     if (ticks.empty()) continue;  // nothing to show on a logarithmic axis
     text += fmt::format("\nset output {}.format\nset ytics {}\nset ylabel {}\nplot",
-                        quoted(stem + "-" + name + "."), ticks, quoted(metric["heading"]));
+                        gnuplot_string(stem + "-" + name + "."), ticks,
+                        gnuplot_string(metric["heading"]));
     std::string lines;
     for (std::size_t s = 0; s < scene["samplers"].size(); ++s) {
       text += fmt::format(
@@ -159,7 +161,7 @@ std::string errors_script(const Json& summary, const Json& scene, const std::str
           across.column, median + 1, median + 2, kSeriesColours[s % kSeriesColours.size()]);
       lines +=
           fmt::format(" \\\n  data index {} using {}:{} with linespoints title {} {} pt {} ps 0.5,",
-                      s, across.column, median, quoted(scene["samplers"][s]["sampler"]),
+                      s, across.column, median, gnuplot_string(scene["samplers"][s]["sampler"]),
                       line_look(s), point_type(s));
     }
     lines.back() = '\n';
@@ -184,7 +186,7 @@ std::optional<int> spectrum_spp(const Json& scene) {
 // A row for each frequency: it, and each sampler's power.
 std::string spectrum_data(const Json& scene, int spp) {
   std::string text = fmt::format("# frequency, then the power of each sampler at {} spp:\n#", spp);
-  for (const Json& sampler : scene["samplers"]) text += " " + quoted(sampler["sampler"]);
+  for (const Json& sampler : scene["samplers"]) text += " " + gnuplot_string(sampler["sampler"]);
   text += "\n";
   for (std::size_t k = 0; k < scene["frequencies"].size(); ++k) {
     text += number_or_missing(scene["frequencies"][k]);
@@ -211,10 +213,10 @@ std::string spectrum_script(const Json& scene, const std::string& label, int spp
           "set xlabel 'spatial frequency (cycles per pixel)'\n"
           "set ylabel 'power of the error (radiance squared)'\n"
           "set output {}.format\nplot",
-          quoted(stem + ".dat"), quoted(stem + "."));
+          gnuplot_string(stem + ".dat"), gnuplot_string(stem + "."));
   for (std::size_t s = 0; s < scene["samplers"].size(); ++s) {
     text += fmt::format(" \\\n  data using 1:{} with lines title {} {},", s + 2,
-                        quoted(scene["samplers"][s]["sampler"]), line_look(s));
+                        gnuplot_string(scene["samplers"][s]["sampler"]), line_look(s));
   }
   text.back() = '\n';
   return text;
@@ -261,8 +263,8 @@ std::string write_figures(const Json& summary, const std::string& directory) {
         fmt::format("({})", fmt::join(summary["spp"].get<std::vector<int>>(), ", "));
     const std::string times = log_ticks(
         rung_values(scene, [](const Json& rung) { return rung["cpu_seconds"]["median"]; }));
-    for (const Across& across : {Across{"time", "CPU time (s)", 2, times},
-                                 Across{"spp", "samples per pixel", 1, counts}}) {
+    for (const HorizontalAxis& across : {HorizontalAxis{"time", "CPU time (s)", 2, times},
+                                         HorizontalAxis{"spp", "samples per pixel", 1, counts}}) {
       write(fmt::format("{}-error-{}.gp", label, across.name),
             errors_script(summary, scene, label, across));
     }
