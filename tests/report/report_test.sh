@@ -50,4 +50,4 @@ PLY
   cat compare.log
   exit 1
 }
-exec timeout 120 node report_test.mjs "$(command -v chromium)" "$PWD/page"
+exec timeout 240 node report_test.mjs "$(command -v chromium)" "$PWD/page"
