@@ -37,8 +37,8 @@ inline float fast_exp2(float x) {
   return std::bit_cast<float>((std::int32_t(whole) + 127) << 23) * e;
 }
 
-// x^p for p >= 0, to a relative 2e-6 where the result is between 1e-30 and 1e30; below normal
-// floats, and for negative x, the result is 0. 0^0 is 0, too.
+// x^p for p >= 0, to a relative 2e-6 where x and the result are between 1e-10 and 1e10; below
+// normal floats, and for negative x, the result is 0. 0^0 is 0, too.
 inline float fast_power(float x, float p) {
   constexpr float least = std::numeric_limits<float>::min();
   const float power = p * fast_log2(std::max(x, least));

@@ -209,7 +209,7 @@ TEST(HdrFlip, IsTheSameForBrighterImages) {
 }
 
 TEST(HdrFlip, TellsTheExposureOfTheLargestError) {
-  // The brightest pixels differ where the first exposure shows them, the others at the last.
+  // The brightest pixels differ most where the first exposure shows them, the others far later.
   Image reference = constant(200, 24, 0.01f);
   for (int y = 0; y < 24; ++y) {
     for (int x = 150; x < 200; ++x) {
@@ -219,7 +219,7 @@ TEST(HdrFlip, TellsTheExposureOfTheLargestError) {
   Image test = reference;
   for (float& v : test.pixels) v *= 1.3f;
   const HdrFlip flip = FlipReference(reference).hdr_map(test);
-  EXPECT_EQ(*flip.exposure.at(20, 12), 1.0f);
+  EXPECT_GT(*flip.exposure.at(20, 12), 0.5f);
   EXPECT_EQ(*flip.exposure.at(180, 12), 0.0f);
 }
 
