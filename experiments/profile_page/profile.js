@@ -49,28 +49,19 @@
       "Against weight " + data.base.weight + ", each weight in its fastest layout of lanes. Speed: above 1 is faster. " +
       "Errors: below 1 is better, the mean of " + data.seeds + " renders against " + data.reference_spp +
       " samples per pixel; a few per cent may be noise.");
-    const errors = data.errors.length > 0;
-    const heads = ["weight", "lanes", "mean w", "Mpaths/s", "speed"];
-    if (errors) {
-      shown.forEach((m) => heads.push(m.name + ", equal samples"));
-      heads.push("samples in equal time");
-      shown.forEach((m) => heads.push(m.name + ", equal time"));
-    }
-    const baseErrors = errorsOf(data.base.weight);
-    const rows = data.weights.map((w) => {
+    const marked = data.weights.findIndex((w) => w.weight === data.base.weight);
+    table(s, ["weight", "lanes", "mean w", "Mpaths/s", "speed"], data.weights.map((w) => {
       const p = pointOf(w.weight, w.lanes);
-      const cells = [w.weight, w.lanes, number(3)(p.mean_weight), rate(p.paths_per_second),
+      return [w.weight, w.lanes, number(3)(p.mean_weight), rate(p.paths_per_second),
         ratio(p.paths_per_second / base.paths_per_second)];
-      if (!errors) return cells;
-      const e = errorsOf(w.weight);
-      const against = (at) => shown.forEach((m) =>
-        cells.push(ratio(e[at].values[m.name] / baseErrors[at].values[m.name])));
-      against("equal_samples");
-      cells.push(e.equal_time.spp);
-      against("equal_time");
-      return cells;
+    }), marked);
+    if (!data.errors.length) return;
+    [["equal samples", "equal_samples"], ["equal time", "equal_time"]].forEach(([title, at]) => {
+      const own = errorsOf(data.base.weight)[at].values;
+      s.append("h4").text("Error at " + title);
+      table(s, ["weight", "samples"].concat(shown.map((m) => m.name)), data.errors.map((e) =>
+        [e.weight, e[at].spp].concat(shown.map((m) => ratio(e[at].values[m.name] / own[m.name])))), marked);
     });
-    table(s, heads, rows, data.weights.findIndex((w) => w.weight === data.base.weight));
   }
 
   // One chart: lines of y over the weights in their order.
@@ -129,7 +120,7 @@
     const s = section("Rays per CPU second by traversal mode",
       "The same rays traced in every mode, in millions per second; auto is the renderer's policy.");
     byLayout(s, (body, lanes) => {
-      const modes = d3.keys(base.classes[0].modes).filter((m) => /^(single|packet8|packet16|stream1m|auto)/.test(m));
+      const modes = d3.keys(base.classes[0].modes).filter((m) => /^(single|packet8.*|packet16.*|stream1m|auto)$/.test(m));
       const entries = modes.map((m, i) => ({ name: m, colour: colours[i % 7] }));
       legend(body, entries);
       const plots = body.append("div").attr("class", "plots");
