@@ -1,6 +1,6 @@
 // Camera rays: perspective through a pinhole or a thin lens, or orthographic, with the pixel filter
-// sampled so that every sample counts alike in its own pixel (Ernst, Stamminger and Greiner 2006,
-// "Filter Importance Sampling").
+// sampled so that every sample counts alike in its own pixel, but for its sign (Ernst, Stamminger
+// and Greiner 2006, "Filter Importance Sampling").
 #pragma once
 
 #include "core/scene_data.h"
@@ -18,6 +18,14 @@ LOCKSTEP_INLINE V filter_offset(const float* table, V u) {
   const IntOf<V> i = to_int(cell);
   const V a = gather(table, i), b = gather(table + 1, i);
   return fma(x - cell, b - a, a);
+}
+
+// What a sample there counts, for u in [0, 1).
+template <class V>
+LOCKSTEP_INLINE V filter_weight(const CameraData& camera, const Vec2<V>& u) {
+  const V cells(float{filter_cells});
+  return gather(camera.filter_weight_x, to_int(u.x * cells)) *
+         gather(camera.filter_weight_y, to_int(u.y * cells));
 }
 
 // The point of the filter around the pixel of that column and row that u picks, in pixels from the

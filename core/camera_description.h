@@ -20,10 +20,12 @@ struct CameraDescription {
 
 // Reconstruction filter over the pixel, separable, centred on the pixel; radii in pixels.
 struct PixelFilter {
-  enum class Kind { Box, Triangle, Gaussian };
+  enum class Kind { Box, Triangle, Gaussian, Mitchell, Lanczos };
   Kind kind = Kind::Box;
   glm::vec2 radius{0.5f};
-  float sigma = 0.5f;  // Gaussian only, in pixels
+  float sigma = 0.5f;                      // Gaussian only, in pixels
+  float b = 1.0f / 3.0f, c = 1.0f / 3.0f;  // Mitchell only (Mitchell and Netravali 1988)
+  float tau = 3.0f;  // Lanczos only: sinc(x) sinc(x / tau), cut off at the radius
 };
 
 struct FilmDescription {

@@ -10,8 +10,9 @@ std::vector<std::string> feature_names(FeatureMask set) {
       "triangle-lights", "disk-lights",  "sphere-lights", "environment",
       "environment-map", "point-lights", "spot-lights",   "distant-lights",
       "textured-lights", "light-choice", "textures",      "tangents",
-      "surface-maps",    "opacity",      "one-sided",     "absorption",
-      "filter-table",    "lens",         "orthographic"};
+      "surface-maps",    "trilinear",    "opacity",       "one-sided",
+      "absorption",      "filter-table", "filter-signs",  "lens",
+      "orthographic"};
   std::vector<std::string> result;
   for (unsigned f = 0; f < feature_count; ++f) {
     if (set >> f & 1u) result.emplace_back(names[f]);

@@ -35,23 +35,26 @@ enum class Feature : unsigned {
   Textures,     // of materials
   Tangents,     // frames along the texture coordinates: for anisotropic materials
   SurfaceMaps,  // normal and bump maps
+  Trilinear,    // images that are looked up by the footprint of a pixel
   Opacity,      // surfaces with holes; traversal alone sees them
   OneSided,     // materials whose back absorbs
   Absorption,   // inside dielectrics
   FilterTable,  // a pixel filter other than a box over the pixel
+  FilterSigns,  // one with negative lobes
   Lens,
   Orthographic,
 };
-inline constexpr unsigned feature_count = 31;
+inline constexpr unsigned feature_count = 33;
 
-using FeatureMask = std::uint32_t;
-inline constexpr FeatureMask all_features = (1u << feature_count) - 1u;
+using FeatureMask = std::uint64_t;
+static_assert(feature_count < 64);
+inline constexpr FeatureMask all_features = (FeatureMask(1) << feature_count) - 1;
 
-constexpr FeatureMask bit(Feature f) { return 1u << unsigned(f); }
+constexpr FeatureMask bit(Feature f) { return FeatureMask(1) << unsigned(f); }
 
 template <class... F>
 constexpr FeatureMask feature_set(F... f) {
-  return (0u | ... | bit(f));
+  return (FeatureMask(0) | ... | bit(f));
 }
 
 // Names of the features in the set, in the order above.

@@ -128,6 +128,52 @@ FeatureMask light_features(const FlatScene& flat) {
   return set;
 }
 
+bool is_trilinear(const Texture& texture, const std::vector<bool>& found) {
+  const auto any_of = [&](const auto&... inputs) {
+    const auto is = [&](int t) {
+      return t >= 0 && std::size_t(t) < found.size() && found[std::size_t(t)];
+    };
+    return (... || is(inputs.texture));
+  };
+  if (const auto* image = std::get_if<ImageTexture>(&texture)) {
+    return image->filter == TextureFilter::Trilinear;
+  }
+  if (const auto* board = std::get_if<CheckerboardTexture>(&texture)) {
+    return any_of(board->even, board->odd);
+  }
+  if (const auto* product = std::get_if<ProductTexture>(&texture)) {
+    return any_of(product->a, product->b);
+  }
+  const auto& mix = std::get<MixTexture>(texture);
+  return any_of(mix.a, mix.b, mix.amount);
+}
+
+// Which textures need a footprint: images, then what refers to them, however deep.
+std::vector<bool> trilinear_textures(const std::vector<Texture>& textures) {
+  std::vector<bool> found(textures.size(), false);
+  for (bool more = true; more;) {
+    more = false;
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      if (found[i] || !is_trilinear(textures[i], found)) continue;
+      found[i] = more = true;
+    }
+  }
+  return found;
+}
+
+// Of materials and lights; opacity is looked up without a footprint.
+FeatureMask texture_features(const SceneDescription& description, const FlatScene& flat) {
+  constexpr FeatureMask readers =
+      feature_set(Feature::Textures, Feature::SurfaceMaps, Feature::TexturedLights);
+  if (!(flat.features & readers)) return 0;
+  const std::vector<bool> trilinear = trilinear_textures(description.textures);
+  const auto& bindings = flat.texture_bindings;
+  const bool any = std::any_of(bindings.begin(), bindings.end(), [&](const TextureBinding& b) {
+    return std::size_t(b.texture) < trilinear.size() && trilinear[std::size_t(b.texture)];
+  });
+  return any ? bit(Feature::Trilinear) : 0u;
+}
+
 // Normals for every vertex as soon as one mesh has them; the others' stay unused.
 void append_normals(FlatScene& flat, const SceneDescription& description) {
   if (!(flat.features & bit(Feature::SmoothNormals))) return;
@@ -190,6 +236,7 @@ FlatScene flatten(const SceneDescription& description, glm::vec3 environment_rad
   append_normals(flat, description);
   flatten_lights(description, environment_radiance, flat);
   flat.features |= light_features(flat);
+  flat.features |= texture_features(description, flat);
   append_uvs(flat, description);
   pad(flat);
   flatten_camera(description.camera, description.film, flat);
@@ -202,12 +249,13 @@ std::uint64_t fingerprint(const FlatScene& flat) {
   for (const glm::vec3 v : {c.origin, c.right, c.down, c.corner, c.lens_x, c.lens_y}) {
     print.add_all(std::array{v.x, v.y, v.z});
   }
-  print.add_all(std::array{float(c.width), float(c.height), c.focal_distance});
+  print.add_all(std::array{float(c.width), float(c.height), c.focal_distance, c.footprint});
   print.add_all(std::array{std::int32_t(flat.features), flat.environment_light});
   using Floats = std::initializer_list<const std::vector<float>*>;
   for (const auto* values :
        Floats{&flat.positions, &flat.normals, &flat.uvs, &flat.spheres, &flat.material_parameters,
-              &flat.light_rows, &flat.light_cdf, &flat.filter_x, &flat.filter_y}) {
+              &flat.light_rows, &flat.light_cdf, &flat.filter_x, &flat.filter_y,
+              &flat.filter_weight_x, &flat.filter_weight_y}) {
     print.add_all(*values);
   }
   using Integers = std::initializer_list<const std::vector<std::int32_t>*>;
@@ -241,7 +289,7 @@ std::size_t memory_bytes(const FlatScene& flat) {
              flat.geometry_rows, flat.coincident, flat.spheres, flat.material_kinds,
              flat.material_parameters, flat.material_maps, flat.texture_bindings, flat.opacities,
              flat.light_of_primitive, flat.light_kinds, flat.light_rows, flat.light_cdf,
-             flat.filter_x, flat.filter_y);
+             flat.filter_x, flat.filter_y, flat.filter_weight_x, flat.filter_weight_y);
 }
 
 SceneData view(const FlatScene& flat) {
@@ -261,6 +309,10 @@ SceneData view(const FlatScene& flat) {
   if (!flat.filter_x.empty()) {
     d.camera.filter_x = flat.filter_x.data();
     d.camera.filter_y = flat.filter_y.data();
+  }
+  if (!flat.filter_weight_x.empty()) {
+    d.camera.filter_weight_x = flat.filter_weight_x.data();
+    d.camera.filter_weight_y = flat.filter_weight_y.data();
   }
   d.environment = flat.environment_light;
   d.features = flat.features;

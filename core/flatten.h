@@ -59,6 +59,7 @@ struct FlatScene {
   FeatureMask features = 0;
   CameraData camera;
   std::vector<float> filter_x, filter_y;
+  std::vector<float> filter_weight_x, filter_weight_y;
 };
 
 // All but `coincident`, which the caller may search for beside other work.
@@ -88,7 +89,8 @@ TextureBinding binding_of(const FloatInput& input, int column);
 void flatten_lights(const SceneDescription& description, glm::vec3 environment_radiance,
                     FlatScene& flat);
 
-// core/flatten_camera.cpp
+// core/flatten_camera.cpp. Throws Error for pixel filters whose negative lobes nearly outweigh
+// them.
 void flatten_camera(const CameraDescription& camera, const FilmDescription& film, FlatScene& flat);
 
 }  // namespace lockstep

@@ -20,8 +20,7 @@ Vec2<float> hit_uv(const Holes& holes, std::uint32_t primitive, RTCHitN* hit, un
   const bool has_uvs = (row[3] & geometry_has_uvs) != 0;
   const auto corners =
       load_uv_corners(flat.uvs.data(), Vec3<std::int32_t>(t[0], t[1], t[2]), has_uvs);
-  const float u = RTCHitN_u(hit, n, i), v = RTCHitN_v(hit, n, i);
-  return corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a);
+  return corners.at(RTCHitN_u(hit, n, i), RTCHitN_v(hit, n, i));
 }
 
 float opacity_at(const Holes& holes, const Opacity& opacity, std::uint32_t primitive, RTCHitN* hit,

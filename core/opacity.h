@@ -1,5 +1,6 @@
 // Surfaces with holes: while Embree looks for a ray's hits it asks, for geometry whose opacity is
 // below 1 somewhere, whether there is anything where the ray hits. Shading never learns of holes.
+// Images are looked up whole, without a footprint: a filtered edge of a leaf is no edge any more.
 #pragma once
 
 #include "core/flatten.h"

@@ -169,7 +169,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
     throw Error(description.name + ": nothing to render: no shape and no light");
   }
   expand_shapes(description);
-  s.textures = TextureStore(description.textures, false);
+  s.textures = TextureStore(description.textures);
   s.texture_table = s.textures.table();
   glm::vec3 environment_radiance(0.0f);
   if (has_environment_map(description)) {

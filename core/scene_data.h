@@ -124,9 +124,14 @@ struct GeometryTable {
   const float* spheres = nullptr;  // centre and radius, 4 floats per geometry; zero for meshes
 };
 
-// Inverse distribution function of the pixel filter along x and y: offsets in pixels at
-// u = i / filter_cells, to be interpolated linearly. None for a box over the pixel.
+// Inverse distribution function of the pixel filter's magnitude along x and y: offsets in pixels at
+// u = i / filter_cells, to be interpolated linearly. None for a box over the pixel. Where the
+// filter has negative lobes a sample of a cell counts by the cell's weight: the filter's integral
+// over it, relative to the share of samples that it gets. The weights of all cells have mean 1.
 inline constexpr int filter_cells = 256;
+
+// Of the distance between pixels, what textures are filtered over: see core/texture_footprint.h.
+inline constexpr float footprint_scale = 0.125f;
 
 // Orthographic: rays start at `corner` plus steps and go along `origin`, a unit vector.
 struct CameraData {
@@ -135,9 +140,12 @@ struct CameraData {
   glm::vec3 corner{0.0f};             // direction (not unit) of the top left corner of pixel (0, 0)
   glm::vec3 lens_x{0.0f}, lens_y{0.0f};  // half axes of the lens
   float focal_distance = 1.0f;           // where it is sharp, in lengths of `corner`'s direction
+  float footprint = 0.0f;  // footprint_scale pixels, at distance 1 where it grows with distance
   int width = 0, height = 0;
   const float* filter_x = nullptr;
   const float* filter_y = nullptr;
+  const float* filter_weight_x = nullptr;
+  const float* filter_weight_y = nullptr;
 };
 
 // Rows per instance, `instance_stride` floats each, after the identity for what is no instance:

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/texel.h"
+#include "core/texture_footprint.h"
 #include "core/vec.h"
 
 namespace lockstep {
@@ -90,11 +91,25 @@ LOCKSTEP_INLINE Rgba<V> lookup_image(const ImageLookup& image, const Vec2<V>& uv
   return filtered_texel(image, whole, uv);
 }
 
-// Interpolates between the two levels of the pyramid next to `level`.
+// The level of an image that what lookup() is told means.
 template <class V>
-LOCKSTEP_INLINE Rgba<V> lookup_image(const ImageLookup& image, const Vec2<V>& uv, const V& level) {
+LOCKSTEP_INLINE V level_of(const ImageLookup&, const UvTransform&, const V& level) {
+  return level;
+}
+template <class V>
+LOCKSTEP_INLINE V level_of(const ImageLookup& image, const UvTransform& t,
+                           const UvFootprint<V>& footprint) {
+  return level_of_detail(image.texels, t, footprint);
+}
+
+// Interpolates between the two levels of the pyramid next to that of `detail`. Most lookups need
+// the whole image alone. Apart, as images without a pyramid are looked up faster by less code.
+template <class V, class Detail>
+[[gnu::noinline]] Rgba<V> lookup_levels(const ImageLookup& image, const UvTransform& t,
+                                        const Vec2<V>& uv, const Detail& detail) {
   using I = IntOf<V>;
-  if (image.texels.level_count == 1) return lookup_image(image, uv);
+  const V level = level_of(image, t, detail);
+  if (none(level > V(0.0f))) return lookup_image(image, uv);
   const int last = image.texels.level_count - 1;
   const V position = clamp(level, V(0.0f), V(float(last)));
   const V lower = floor(position), upper_weight = position - lower;
@@ -107,6 +122,19 @@ LOCKSTEP_INLINE Rgba<V> lookup_image(const ImageLookup& image, const Vec2<V>& uv
     sum = fma(weight, filtered_texel(image, extent, uv), sum);
   }
   return sum;
+}
+
+// The image's colour at the mesh's uv.
+template <class V>
+LOCKSTEP_INLINE Rgba<V> lookup_image(const ImageLookup& image, const UvTransform& t,
+                                     const Vec2<V>& uv) {
+  return lookup_image(image, transform(t, uv));
+}
+template <class V, class Detail>
+LOCKSTEP_INLINE Rgba<V> lookup_image(const ImageLookup& image, const UvTransform& t,
+                                     const Vec2<V>& uv, const Detail& detail) {
+  if (image.texels.level_count == 1) return lookup_image(image, t, uv);
+  return lookup_levels(image, t, transform(t, uv), detail);
 }
 
 // x^power where x > 0, else 0.
@@ -153,10 +181,10 @@ LOCKSTEP_INLINE Rgba<V> inverted(const Rgba<V>& c) {
 }
 
 // Runs a node on the stack, whose top is at stack[top - 1]; gives the new top.
-// `level` is that of lookup(), or nothing.
-template <class V, class... Level>
+// `detail` is that of lookup(), or nothing.
+template <class V, class... Detail>
 LOCKSTEP_INLINE int run_node(const TextureTable& table, const TextureNode& node, const Vec2<V>& uv,
-                             Rgba<V>* stack, int top, const Level&... level) {
+                             Rgba<V>* stack, int top, const Detail&... detail) {
   const V x(node.value.x), y(node.value.y), z(node.value.z);
   if (node.op == TextureOp::Constant) {
     stack[top] = {x, y, z, V(1.0f)};
@@ -164,7 +192,7 @@ LOCKSTEP_INLINE int run_node(const TextureTable& table, const TextureNode& node,
   }
   if (node.op == TextureOp::Image) {
     const ImageLookup& image = table.images[node.image];
-    const Rgba<V> c = lookup_image(image, transform(node.uv, uv), level...);
+    const Rgba<V> c = lookup_image(image, node.uv, uv, detail...);
     stack[top] = image.invert ? inverted(c) : c;
     return top + 1;
   }
@@ -195,17 +223,18 @@ LOCKSTEP_INLINE int run_node(const TextureTable& table, const TextureNode& node,
 }
 
 // The texture's linear colour and alpha at the mesh's uv; `texture` is the same in all lanes.
-// With a level of detail: 0 is the whole image, each step halves its sides. Only images with the
-// filter Trilinear heed it, each by its own size.
-template <class V, class... Level>
+// `detail` is a UvFootprint, from which every image's size and transform give the level of its
+// pyramid, or that level: 0 is the whole image, each step halves its sides. Only images with the
+// filter Trilinear heed it.
+template <class V, class... Detail>
 [[gnu::noinline]] Rgba<V> lookup(const TextureTable& table, int texture, const Vec2<V>& uv,
-                                 const Level&... level) {
-  static_assert(sizeof...(Level) <= 1);
+                                 const Detail&... detail) {
+  static_assert(sizeof...(Detail) <= 1);
   Rgba<V> stack[texture_stack_size];
   const TextureProgram program = table.programs[texture];
   int top = 0;
   for (int i = 0; i < program.count; ++i) {
-    top = run_node(table, table.nodes[program.first + i], uv, stack, top, level...);
+    top = run_node(table, table.nodes[program.first + i], uv, stack, top, detail...);
   }
   return stack[0];
 }

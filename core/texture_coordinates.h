@@ -39,6 +39,10 @@ LOCKSTEP_INLINE Vec3<I> load_vertices(const SceneData& scene, const Rows<I>& geo
 template <class V>
 struct UvCorners {
   Vec2<V> a, b, c;
+
+  LOCKSTEP_INLINE Vec2<V> at(V u, V v) const {
+    return {fma(u, b.x - a.x, fma(v, c.x - a.x, a.x)), fma(u, b.y - a.y, fma(v, c.y - a.y, a.y))};
+  }
 };
 
 template <class I>
@@ -61,9 +65,7 @@ LOCKSTEP_INLINE TextureCoordinates<V> triangle_coordinates(const Corners<V>& p,
   const V det = fma(e1.x, e2.y, -(e1.y * e2.x));
   const MaskOf<V> spans = abs(det) > V(1e-20f);
   const V scale = select(spans, V(1.0f) / select(spans, det, V(1.0f)), V(0.0f));
-  return {{fma(u, e1.x, fma(v, e2.x, t.a.x)), fma(u, e1.y, fma(v, e2.y, t.a.y))},
-          (edge1 * e2.y - edge2 * e1.y) * scale,
-          (edge2 * e1.x - edge1 * e2.x) * scale};
+  return {t.at(u, v), (edge1 * e2.y - edge2 * e1.y) * scale, (edge2 * e1.x - edge1 * e2.x) * scale};
 }
 
 // u runs around z from +x, v from -z to +z.

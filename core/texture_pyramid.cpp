@@ -2,9 +2,12 @@
 #include "core/half.h"
 #include "core/texture_image.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <vector>
 
 namespace lockstep {
 namespace {
@@ -52,35 +55,49 @@ std::uint32_t encoded(const TextureImage& image, float v) {
   return code > 0 && v - *(above - 1) < *above - v ? code - 1 : code;
 }
 
-// Appends a texel in the format of `image`.
-void append(const TextureImage& image, const LinearTexel& t, std::vector<std::int32_t>& words) {
-  const auto push = [&](std::uint32_t word) { words.push_back(std::int32_t(word)); };
+// Stores a texel in the format of `image`.
+void put(const TextureImage& image, const LinearTexel& t, std::int32_t* words) {
+  const auto pair = [](std::uint32_t low, std::uint32_t high) {
+    return std::int32_t(low | high << 16);
+  };
   switch (image.format) {
     case TexelFormat::Byte:
-      return push(encoded(image, t.r) | encoded(image, t.g) << 8 | encoded(image, t.b) << 16 |
-                  whole(t.a, 255.0f) << 24);
+      words[0] = std::int32_t(encoded(image, t.r) | encoded(image, t.g) << 8 |
+                              encoded(image, t.b) << 16 | whole(t.a, 255.0f) << 24);
+      return;
     case TexelFormat::Short:
-      push(whole(t.r, 65535.0f) | whole(t.g, 65535.0f) << 16);
-      return push(whole(t.b, 65535.0f) | whole(t.a, 65535.0f) << 16);
+      words[0] = pair(whole(t.r, 65535.0f), whole(t.g, 65535.0f));
+      words[1] = pair(whole(t.b, 65535.0f), whole(t.a, 65535.0f));
+      return;
     case TexelFormat::Half:
-      push(half_from_float(t.r) | std::uint32_t(half_from_float(t.g)) << 16);
-      return push(half_from_float(t.b) | std::uint32_t(half_from_float(t.a)) << 16);
+      words[0] = pair(half_from_float(t.r), half_from_float(t.g));
+      words[1] = pair(half_from_float(t.b), half_from_float(t.a));
+      return;
     case TexelFormat::Float:
-      for (const float v : {t.r, t.g, t.b, t.a}) push(std::bit_cast<std::uint32_t>(v));
+      for (const float v : {t.r, t.g, t.b, t.a}) *words++ = std::bit_cast<std::int32_t>(v);
   }
+}
+
+std::vector<Span> covered_by_all(int size, int smaller) {
+  std::vector<Span> spans;
+  for (int at = 0; at < smaller; ++at) spans.push_back(covered(at, size, smaller));
+  return spans;
 }
 
 void append_level(TextureImage& image, int level) {
   const int width = image.levels[std::size_t(level) * level_stride];
   const int height = image.levels[std::size_t(level) * level_stride + 1];
   const int w = std::max(1, width / 2), h = std::max(1, height / 2);
-  std::vector<std::int32_t> words;
-  for (int y = 0; y < h; ++y) {
-    const Span rows = covered(y, height, h);
-    for (int x = 0; x < w; ++x) {
-      append(image, average(image, level, covered(x, width, w), rows), words);
+  const std::vector<Span> columns = covered_by_all(width, w), rows = covered_by_all(height, h);
+  const auto texel_words = std::size_t(words_per_texel(image.format));
+  std::vector<std::int32_t> words(std::size_t(w) * std::size_t(h) * texel_words);
+  tbb::parallel_for(std::size_t(0), rows.size(), [&](std::size_t y) {
+    std::int32_t* out = words.data() + y * columns.size() * texel_words;
+    for (const Span& span : columns) {
+      put(image, average(image, level, span, rows[y]), out);
+      out += texel_words;
     }
-  }
+  });
   const auto first = std::int32_t(image.words.size() - texel_padding);
   image.levels.insert(image.levels.end(), {w, h, first, 0});
   image.words.insert(image.words.end() - texel_padding, words.begin(), words.end());

@@ -77,12 +77,9 @@ void add(Fingerprint& print, const TextureNode& node) {
 
 }  // namespace
 
-TextureStore::TextureStore(const std::vector<Texture>& textures, bool pyramids) {
+TextureStore::TextureStore(const std::vector<Texture>& textures) {
   std::vector<Task> tasks;
   const std::vector<int> task_of = collect(textures, tasks);
-  if (!pyramids) {
-    for (Task& task : tasks) task.pyramid = false;
-  }
   images_ = load(tasks);
   std::vector<int> lookup_of_texture(textures.size(), -1);
   for (std::size_t i = 0; i < textures.size(); ++i) {

@@ -15,8 +15,7 @@ class TextureStore {
   TextureStore() = default;
   // Loads every image once per encoding, on all of oneTBB's threads. Throws the Error of the first
   // texture that has one: see read_texture_image and compile_textures.
-  // Without pyramids the filter Trilinear is Bilinear: for kernels that state no level of detail.
-  explicit TextureStore(const std::vector<Texture>& textures, bool pyramids = true);
+  explicit TextureStore(const std::vector<Texture>& textures);
 
   // Programs in the order of the scene's textures; valid while the store lives, moved or not.
   TextureTable table() const;

@@ -90,11 +90,16 @@ Json camera_json(const CameraDescription& camera) {
 }
 
 Json film_json(const FilmDescription& film) {
-  constexpr const char* kinds[] = {"box", "triangle", "gaussian"};
+  constexpr const char* kinds[] = {"box", "triangle", "gaussian", "mitchell", "lanczos"};
   const PixelFilter& filter = film.filter;
   Json filter_json{{"kind", kinds[int(filter.kind)]},
                    {"radius", {filter.radius.x, filter.radius.y}}};
   if (filter.kind == PixelFilter::Kind::Gaussian) filter_json["sigma"] = filter.sigma;
+  if (filter.kind == PixelFilter::Kind::Mitchell) {
+    filter_json["b"] = filter.b;
+    filter_json["c"] = filter.c;
+  }
+  if (filter.kind == PixelFilter::Kind::Lanczos) filter_json["tau"] = filter.tau;
   return {{"resolution", {film.width, film.height}}, {"filter", filter_json}};
 }
 

@@ -217,6 +217,10 @@ std::string film_text(const FilmDescription& film, const RenderDefaults& default
   std::string kind = "box";
   if (filter.kind == PixelFilter::Kind::Triangle) kind = "triangle";
   if (filter.kind == PixelFilter::Kind::Gaussian) kind = "Gaussian, sigma " + number(filter.sigma);
+  if (filter.kind == PixelFilter::Kind::Mitchell) {
+    kind = fmt::format("Mitchell, B {}, C {}", number(filter.b), number(filter.c));
+  }
+  if (filter.kind == PixelFilter::Kind::Lanczos) kind = "Lanczos, tau " + number(filter.tau);
   return "\nFilm\n" + line("resolution", fmt::format("{} x {}", film.width, film.height)) +
          line("filter", fmt::format("{}, radius {} px", kind, pair_text(filter.radius))) +
          line("samples per pixel", std::to_string(defaults.spp)) +

@@ -70,7 +70,7 @@ LOCKSTEP_INLINE auto load_bsdf_at(const SceneData& scene, const Surface<Float<W>
   MaterialTable table = scene.materials;
   Int<W> row = material;
   if (needs<F>(scene, Feature::Textures)) {
-    load_textured_rows<W>(scene, material, active, surface.uv, rows);
+    load_textured_rows<W>(scene, material, active, surface.texture, rows);
     table.parameters = rows.parameters;
     row = lane_indices<W>();
   }

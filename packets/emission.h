@@ -16,12 +16,12 @@ template <int W, FeatureMask F>
   using V = Float<W>;
   using I = Int<W>;
   const Rows<I> geometry = geometry_of_hits(scene, load<I>(hits.geometry + i), glows);
-  const Vec2<V> uv = hit_uv<W, F>(scene, rays, hits, i, glows, geometry);
+  const TexturePoint<V> at = texture_point<W, F>(scene, rays, hits, i, glows, geometry);
   Vec3<V> color(V(1.0f));
   for_each_distinct(binding, glows, [&](std::int32_t index, Mask<W> lanes) {
     TextureBinding b = scene.materials.bindings[index];
     b.scale = glm::vec3(1.0f);  // which the light's radiance already holds
-    color = select<V>(lanes, bound_value(scene.textures, b, uv), color);
+    color = select<V>(lanes, bound_value(scene.textures, b, at), color);
   });
   return color;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/hash.h"
-#include "core/texture_coordinates.h"
+#include "packets/surface.h"
 #include "packets/textured.h"
 #include "packets/wave.h"
 
@@ -17,29 +17,36 @@ LOCKSTEP_INLINE Rows<I> geometry_of_hits(const SceneData& scene, I geometry, Mas
 
 // Where the hits at i... lie on their textures.
 template <int W, FeatureMask F>
-LOCKSTEP_INLINE Vec2<Float<W>> hit_uv(const SceneData& scene, const RayQueue& rays,
-                                      const HitArray& hits, int i, const Mask<W>& hit,
-                                      const Rows<Int<W>>& geometry) {
+LOCKSTEP_INLINE TexturePoint<Float<W>> texture_point(const SceneData& scene, const RayQueue& rays,
+                                                     const HitArray& hits, int i,
+                                                     const Mask<W>& hit,
+                                                     const Rows<Int<W>>& geometry) {
   using V = Float<W>;
   using I = Int<W>;
-  const I primitive = select(hit, load<I>(hits.primitive + i), I(0));
-  const Vec3<I> vertices = load_vertices(scene, geometry, primitive);
-  const Mask<W> has_uvs = (geometry.w & I(geometry_has_uvs)) != I(0);
-  const UvCorners<V> t = load_uv_corners(scene.uvs, vertices, has_uvs);
+  const I id = select(hit, load<I>(hits.geometry + i), I(0));
+  const Vec3<I> vertices =
+      load_vertices(scene, geometry, select(hit, load<I>(hits.primitive + i), I(0)));
   const V u = load<V>(hits.u + i), v = load<V>(hits.v + i);
-  Vec2<V> uv(fma(u, t.b.x - t.a.x, fma(v, t.c.x - t.a.x, t.a.x)),
-             fma(u, t.b.y - t.a.y, fma(v, t.c.y - t.a.y, t.a.y)));
-  const Mask<W> sphere = hit & ((geometry.w & I(geometry_is_sphere)) != I(0));
-  if (needs<F>(scene, Feature::Spheres) && any(sphere)) {
-    const auto row = gather_rows(scene.geometry.spheres,
-                                 select(sphere, load<I>(hits.geometry + i), I(0)) * I(4));
-    const Vec3<V> p =
-        fma(load<V>(hits.distance + i), load3<V>(rays.direction, i), load3<V>(rays.origin, i));
-    const Vec3<V> n = normalize_any<V>(p - Vec3<V>(row.x, row.y, row.z));
-    const TextureCoordinates<V> s = sphere_coordinates(n, row.w);
-    uv = {select(sphere, s.uv.x, uv.x), select(sphere, s.uv.y, uv.y)};
+  const bool filtered = needs<F>(scene, Feature::Trilinear);
+  PlacedTriangle<V> triangle{};  // which uv alone does not need
+  if (filtered) {
+    const bool instances = needs<F>(scene, Feature::Instances);
+    const I instance = instances ? load<I>(hits.instance + i) : I(-1);
+    triangle = place_triangle<F>(scene, vertices, select(hit, instance, I(-1)));
   }
-  return uv;
+  HitPoint<V> point{triangle.corners.at(u, v), triangle.magnitude};
+  Vec3<V> normal = triangle.normal;
+  if (needs<F>(scene, Feature::Spheres)) {
+    const Vec3<V> on_ray =
+        fma(load<V>(hits.distance + i), load3<V>(rays.direction, i), load3<V>(rays.origin, i));
+    refine_sphere(scene, hit & is_sphere(geometry), id, on_ray, point, normal);
+  }
+  const Vec3<V> unit = normalize_any(normal);
+  const TextureCoordinates<V> t =
+      load_coordinates<F>(scene, id, geometry, vertices, triangle.corners, u, v, unit);
+  TexturePoint<V> at{t.uv, {}};
+  if (filtered) at.footprint = footprint_at<F>(scene, t, point.position, unit);
+  return at;
 }
 
 // Mixed materials: each path goes on with one of the parts, chosen by a number of its own that no
@@ -61,11 +68,11 @@ template <int W, FeatureMask F>
           hit & (gather(scene.materials.kinds, material) == I(int(MaterialKind::Mix)));
       if (none(mixed)) break;
       MaterialRows<W> rows;
-      Vec2<V> uv(V(0.0f));
+      TexturePoint<V> at{Vec2<V>(V(0.0f)), {}};
       if (needs<F>(scene, Feature::Textures)) {
-        uv = hit_uv<W, F>(scene, rays, hits, i, hit, geometry);
+        at = texture_point<W, F>(scene, rays, hits, i, hit, geometry);
       }
-      load_textured_rows<W>(scene, material, mixed, uv, rows);
+      load_textured_rows<W>(scene, material, mixed, at, rows);
       const auto row = gather_rows(rows.parameters, lane_indices<W>() * I(material_stride));
       const I path = select(hit, load<I>(rays.path + i), I(0));
       const U key(job.sampler->seed ^ 0x6d697865u);

@@ -87,7 +87,7 @@ void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
     add_direct_light<W>(wave.shadows, wave.paths);
   }
   clock.enter(Stage::Film);
-  end_paths(job, wave.paths, counts);
+  end_paths<F>(job, wave.paths, counts);
 }
 
 // Samples of a tile in waves. With many samples per block of lanes a wave covers fewer pixels.

@@ -72,7 +72,7 @@ void begin_paths(const TileJob& job, Wave& wave) {
 template <int W, FeatureMask F>
 void generate_camera_rays(const TileJob& job, Wave& wave, StageClock& clock) {
   using V = Float<W>;
-  const PathTable& paths = wave.paths;
+  PathTable& paths = wave.paths;
   const PathOrder& order = wave.order;
   const CameraData& camera = job.scene->camera;
   RayQueue& rays = wave.rays[0];
@@ -96,8 +96,11 @@ void generate_camera_rays(const TileJob& job, Wave& wave, StageClock& clock) {
   for (int i = 0; i < paths.count; i += W) {
     const V column = to_float(load<Int<W>>(order.x + i) + Int<W>(job.x0));
     const V row = to_float(load<Int<W>>(order.y + i) + Int<W>(job.y0));
-    const Vec2<V> point =
-        image_point<V, F>(camera, column, row, Vec2<V>(load<V>(u + i), load<V>(v + i)));
+    const Vec2<V> at(load<V>(u + i), load<V>(v + i));
+    if (needs<F>(*job.scene, Feature::FilterSigns)) {
+      store(paths.weight + i, filter_weight(camera, at));
+    }
+    const Vec2<V> point = image_point<V, F>(camera, column, row, at);
     const CameraRay<V> ray = ray_through(point, i);
     store3(rays.origin, i, ray.origin);
     store3(rays.direction, i, ray.direction);
@@ -119,10 +122,15 @@ inline void count_nonfinite(const TileJob& job, const PathTable& paths, int i, T
 }
 
 // Adds the wave's paths to the film, a pixel's samples in ascending order.
-inline void end_paths(const TileJob& job, const PathTable& paths, TileCounts& counts) {
+template <FeatureMask F>
+void end_paths(const TileJob& job, const PathTable& paths, TileCounts& counts) {
   for (int i = 0; i < paths.count; ++i) {
     Float4 radiance;
     std::memcpy(&radiance, paths.radiance + 4 * i, sizeof radiance);
+    if (needs<F>(*job.scene, Feature::FilterSigns)) {
+      const float weight = paths.weight[i];
+      radiance *= Float4{weight, weight, weight, 1.0f};
+    }
     const Float4 zero = radiance * 0.0f;  // NaN where not finite
     if (!(zero[0] + zero[1] + zero[2] == 0.0f)) {
       count_nonfinite(job, paths, i, counts);

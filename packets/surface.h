@@ -17,7 +17,7 @@ struct Surface {
   Frame<V> frame;            // around the shading normal, on the viewer's side
   Vec3<V> wo;                // local, to where the ray came from; wo.z > 0
   MaskOf<V> outside;         // the viewer is on the side that the mesh calls outside
-  Vec2<V> uv;                // where the scene has textures
+  TexturePoint<V> texture;   // where the scene has textures
 };
 
 // A point interpolated between a triangle's corners is off its plane by at most seven roundings of
@@ -35,6 +35,11 @@ struct HitPoint {
 template <class V>
 LOCKSTEP_INLINE V largest_coordinate(const Corners<V>& p) {
   return max(max(max_component(abs(p.a)), max_component(abs(p.b))), max_component(abs(p.c)));
+}
+
+template <class I>
+LOCKSTEP_INLINE MaskOf<I> is_sphere(const Rows<I>& geometry) {
+  return (geometry.w & I(geometry_is_sphere)) != I(0);
 }
 
 // Spheres: the hit is put back onto the sphere, whose normal there is exact.
@@ -83,28 +88,32 @@ LOCKSTEP_INLINE MatrixRows<FloatOf<I>> load_matrix(const SceneData& scene, I ins
   return {gather_rows(rows, at), gather_rows(rows + 4, at), gather_rows(rows + 8, at)};
 }
 
-template <int W, FeatureMask F>
-LOCKSTEP_INLINE TextureCoordinates<Float<W>> load_coordinates(const SceneData& scene,
-                                                              const ShadeQueue& queue, int i,
-                                                              const Rows<Int<W>>& geometry,
-                                                              const Vec3<Int<W>>& vertices,
-                                                              const Corners<Float<W>>& corners,
-                                                              const Vec3<Float<W>>& sphere_normal) {
-  using V = Float<W>;
-  using I = Int<W>;
-  const Mask<W> has_uvs = (geometry.w & I(geometry_has_uvs)) != I(0);
+// Where the lanes' hits lie on their textures; `normal`: of those on spheres.
+template <FeatureMask F, class I, class V = FloatOf<I>>
+LOCKSTEP_INLINE TextureCoordinates<V> load_coordinates(const SceneData& scene, I id,
+                                                       const Rows<I>& geometry,
+                                                       const Vec3<I>& vertices,
+                                                       const Corners<V>& corners, V u, V v,
+                                                       const Vec3<V>& normal) {
+  const auto has_uvs = (geometry.w & I(geometry_has_uvs)) != I(0);
   TextureCoordinates<V> t =
-      triangle_coordinates(corners, load_uv_corners(scene.uvs, vertices, has_uvs),
-                           load<V>(queue.barycentric_u + i), load<V>(queue.barycentric_v + i));
+      triangle_coordinates(corners, load_uv_corners(scene.uvs, vertices, has_uvs), u, v);
   if (needs<F>(scene, Feature::Spheres)) {
-    const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
-    const V radius = gather(scene.geometry.spheres + 3, load<I>(queue.geometry + i) * I(4));
-    const TextureCoordinates<V> s = sphere_coordinates(sphere_normal, radius);
+    const auto sphere = is_sphere(geometry);
+    const V radius = gather(scene.geometry.spheres + 3, id * I(4));
+    const TextureCoordinates<V> s = sphere_coordinates(normal, radius);
     t.uv = {select(sphere, s.uv.x, t.uv.x), select(sphere, s.uv.y, t.uv.y)};
     t.du = select<V>(sphere, s.du, t.du);
     t.dv = select<V>(sphere, s.dv, t.dv);
   }
   return t;
+}
+
+// What lookups there average over.
+template <FeatureMask F, class V>
+LOCKSTEP_INLINE UvFootprint<V> footprint_at(const SceneData& scene, const TextureCoordinates<V>& t,
+                                            const Vec3<V>& position, const Vec3<V>& normal) {
+  return uv_footprint(t.du, t.dv, footprint_width2<F>(scene, position, normal));
 }
 
 // Where a map turns the normal away from the viewer it is bent back until it just faces it.
@@ -177,8 +186,8 @@ LOCKSTEP_INLINE void turn_by_maps(const SceneData& scene, const ShadeQueue& queu
   }
   const V side = select(s.outside, V(1.0f), V(-1.0f));
   const Vec3<V> outer = shading * side;
-  const Vec3<V> mapped =
-      apply_surface_maps<W>(scene, material, lanes_below<W>(i, queue.count), t, outer);
+  const Vec3<V> mapped = apply_surface_maps<W>(scene, material, lanes_below<W>(i, queue.count), t,
+                                               s.texture.footprint, outer);
   const auto altered = (mapped.x != outer.x) | (mapped.y != outer.y) | (mapped.z != outer.z);
   shading = select<V>(altered, facing_viewer<V>(mapped * side, away), shading);
 }
@@ -197,9 +206,8 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
   HitPoint<V> hit{triangle.corners.at(u, v), triangle.magnitude};
   Vec3<V> normal = triangle.normal;
   if (needs<F>(scene, Feature::Spheres)) {
-    const Mask<W> sphere = (geometry.w & I(geometry_is_sphere)) != I(0);
     const Vec3<V> on_ray = fma(load<V>(queue.distance + i), direction, load3<V>(queue.origin, i));
-    refine_sphere(scene, sphere, load<I>(queue.geometry + i), on_ray, hit, normal);
+    refine_sphere(scene, is_sphere(geometry), load<I>(queue.geometry + i), on_ray, hit, normal);
   }
 
   Surface<V> s;
@@ -216,9 +224,12 @@ LOCKSTEP_INLINE Surface<Float<W>> load_surface(const SceneData& scene, const Sha
     smooth_normal<F>(scene, vertices, instance, geometry.w, u, v, away, s, shading);
   }
   if (needs_any<F>(scene, uv_features)) {
-    const TextureCoordinates<V> t =
-        load_coordinates<W, F>(scene, queue, i, geometry, vertices, triangle.corners, unit);
-    s.uv = t.uv;
+    const TextureCoordinates<V> t = load_coordinates<F>(
+        scene, load<I>(queue.geometry + i), geometry, vertices, triangle.corners, u, v, unit);
+    s.texture.uv = t.uv;
+    if (needs<F>(scene, Feature::Trilinear)) {
+      s.texture.footprint = footprint_at<F>(scene, t, hit.position, s.geometric_normal);
+    }
     tangent = t.du;
     if (needs<F>(scene, Feature::SurfaceMaps)) {
       turn_by_maps<W, F>(scene, queue, i, geometry.y, t, away, s, shading);

@@ -11,8 +11,9 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 // Tangent-space normals as glTF has them: x along u, y against v, z along the normal.
 template <class V>
 LOCKSTEP_INLINE Vec3<V> mapped_normal(const TextureTable& textures, const TextureBinding& map,
-                                      const TextureCoordinates<V>& at, const Vec3<V>& normal) {
-  const Rgba<V> texel = lookup(textures, map.texture, at.uv);
+                                      const TextureCoordinates<V>& at,
+                                      const UvFootprint<V>& footprint, const Vec3<V>& normal) {
+  const Rgba<V> texel = lookup(textures, map.texture, at.uv, footprint);
   const V x = fma(V(2.0f), texel.r, V(-1.0f)) * V(map.scale.x);
   const V y = fma(V(2.0f), texel.g, V(-1.0f)) * V(map.scale.x);
   const V z = fma(V(2.0f), texel.b, V(-1.0f));
@@ -25,10 +26,12 @@ LOCKSTEP_INLINE Vec3<V> mapped_normal(const TextureTable& textures, const Textur
 // half a texel of a map of a thousand (Blinn 1978; the step is pbrt's).
 template <class V>
 LOCKSTEP_INLINE Vec3<V> bumped_normal(const TextureTable& textures, const TextureBinding& map,
-                                      const TextureCoordinates<V>& at, const Vec3<V>& normal) {
+                                      const TextureCoordinates<V>& at,
+                                      const UvFootprint<V>& footprint, const Vec3<V>& normal) {
   constexpr float step = 0.0005f;
   const auto height = [&](float du, float dv) LOCKSTEP_LAMBDA {
-    return bound_value(textures, map, Vec2<V>(at.uv.x + V(du), at.uv.y + V(dv))).x;
+    const TexturePoint<V> there{{at.uv.x + V(du), at.uv.y + V(dv)}, footprint};
+    return bound_value(textures, map, there).x;
   };
   const V here = height(0.0f, 0.0f);
   const V slope_u = (height(step, 0.0f) - here) * V(1.0f / step);
@@ -56,16 +59,18 @@ template <int W>
 [[gnu::noinline]] Vec3<Float<W>> apply_surface_maps(const SceneData& scene, const Int<W>& material,
                                                     const Mask<W>& active,
                                                     const TextureCoordinates<Float<W>>& at,
+                                                    const UvFootprint<Float<W>>& footprint,
                                                     Vec3<Float<W>> normal) {
+  using V = Float<W>;
   for_each_distinct(material, active, [&](std::int32_t m, Mask<W> lanes) {
     const std::int32_t* map = scene.materials.maps + m * map_stride;
     if (map[2] >= 0) {
       const TextureBinding& b = scene.materials.bindings[map[2]];
-      normal = select<Float<W>>(lanes, mapped_normal(scene.textures, b, at, normal), normal);
+      normal = select<V>(lanes, mapped_normal(scene.textures, b, at, footprint, normal), normal);
     }
     if (map[3] >= 0) {
       const TextureBinding& b = scene.materials.bindings[map[3]];
-      normal = select<Float<W>>(lanes, bumped_normal(scene.textures, b, at, normal), normal);
+      normal = select<V>(lanes, bumped_normal(scene.textures, b, at, footprint, normal), normal);
     }
   });
   return normal;

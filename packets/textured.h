@@ -11,11 +11,11 @@
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
-// The value of an input at uv, in as many components as the binding has columns.
+// The value of an input there, in as many components as the binding has columns.
 template <class V>
 LOCKSTEP_INLINE Vec3<V> bound_value(const TextureTable& textures, const TextureBinding& b,
-                                    const Vec2<V>& uv) {
-  const Rgba<V> texel = lookup(textures, b.texture, uv);
+                                    const TexturePoint<V>& at) {
+  const Rgba<V> texel = lookup(textures, b.texture, at.uv, at.footprint);
   const Vec3<V> scale = splat<V>(b.scale);
   if (b.is_color) return scale * Vec3<V>(texel.r, texel.g, texel.b);
   return scale * Vec3<V>(number_of(texel, b.channel, b.power));
@@ -27,10 +27,10 @@ struct MaterialRows {
   alignas(64) float parameters[W * material_stride];
 };
 
-// Fills the rows of the lanes' materials, with values of textures at uv.
+// Fills the rows of the lanes' materials, with the textures' values there.
 template <int W>
 [[gnu::noinline]] void load_textured_rows(const SceneData& scene, const Int<W>& material,
-                                          const Mask<W>& active, const Vec2<Float<W>>& uv,
+                                          const Mask<W>& active, const TexturePoint<Float<W>>& at,
                                           MaterialRows<W>& rows) {
   using V = Float<W>;
   const MaterialTable& table = scene.materials;
@@ -44,7 +44,7 @@ template <int W>
     const std::int32_t* map = table.maps + m * map_stride;
     for (int i = 0; i < map[1]; ++i) {
       const TextureBinding& b = table.bindings[map[0] + i];
-      const Vec3<V> value = bound_value(scene.textures, b, uv);
+      const Vec3<V> value = bound_value(scene.textures, b, at);
       const V components[] = {value.x, value.y, value.z};
       for (int k = 0; k < b.columns; ++k) {
         float component[W];

@@ -34,6 +34,7 @@ struct alignas(64) PathOrder {
 struct alignas(64) PathTable {
   int count = 0;
   UIntArray pixel, sample;
+  FloatArray weight;              // of the pixel filter, where it has negative lobes
   float radiance[wave_room * 4];  // RGB and 1: summed up, the last counts samples
 };
 

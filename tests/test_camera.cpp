@@ -1,6 +1,7 @@
 // Camera rays: the field of view, the pixel grid, and the density of the pixel filters.
 #include "core/camera.h"
 
+#include "core/error.h"
 #include "core/flatten.h"
 #include "tests/chi_square.h"
 #include "tests/widths.h"
@@ -13,6 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -29,6 +33,8 @@ struct FlatCamera {
     data = flat.camera;
     data.filter_x = flat.filter_x.data();
     data.filter_y = flat.filter_y.data();
+    data.filter_weight_x = flat.filter_weight_x.data();
+    data.filter_weight_y = flat.filter_weight_y.data();
   }
   FlatCamera(const FlatCamera&) = delete;
 };
@@ -106,13 +112,55 @@ TEST(Camera, BoxFilterStaysInItsPixelAndIsUniform) {
 
 double normal_distribution(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
-// Share of the filter's weight that lies below x, in closed form.
+// Of Mitchell and Netravali's cubic filters, and of sinc(x) sinc(x / tau).
+double lobed_filter(const PixelFilter& filter, double radius, double x) {
+  if (filter.kind == PixelFilter::Kind::Lanczos) {
+    const auto sinc = [](double t) {
+      return t == 0.0 ? 1.0 : std::sin(glm::pi<double>() * t) / (glm::pi<double>() * t);
+    };
+    return sinc(x) * sinc(x / double(filter.tau));
+  }
+  const double t = 2.0 * std::abs(x) / radius, b = double(filter.b), c = double(filter.c);
+  // By what B-spline and cardinal spline are made of.
+  const double near = std::max(0.0, 1.0 - t), far = std::max(0.0, 2.0 - t);
+  const double spline = (far * far * far - 4.0 * near * near * near) / 6.0;
+  const double sharp = t < 1.0 ? 1.0 - 2.0 * t * t + t * t * t : -(t - 1.0) * far * far;
+  const double flat = t < 1.0 ? 1.0 - 3.0 * t * t + 2.0 * t * t * t : 0.0;
+  return b * spline + c * (sharp - flat) + (1.0 - b) * flat;
+}
+
+// Sums of a filter with lobes from -radius up to each of many steps.
+struct LobedFilter {
+  static constexpr int steps = 1 << 16;
+  std::vector<double> magnitude{0.0}, value{0.0};
+
+  LobedFilter(const PixelFilter& filter, double radius) {
+    for (int i = 0; i < steps; ++i) {
+      const double f = lobed_filter(filter, radius, radius * ((2.0 * i + 1.0) / steps - 1.0));
+      magnitude.push_back(magnitude.back() + std::abs(f));
+      value.push_back(value.back() + f);
+    }
+  }
+  static double share(const std::vector<double>& sums, double position) {
+    const double at = std::clamp(position, 0.0, 1.0) * steps;
+    const int i = std::min(int(at), steps - 1);
+    return std::lerp(sums[size_t(i)], sums[size_t(i + 1)], at - i) / sums.back();
+  }
+};
+
+// Share of the filter's weight that lies below x, in closed form where there is one.
 double filter_distribution(const PixelFilter& filter, double radius, double x) {
   x = std::clamp(x, -radius, radius);
   if (filter.kind == PixelFilter::Kind::Box) return 0.5 + 0.5 * x / radius;
   if (filter.kind == PixelFilter::Kind::Triangle) {
     const double tail = 0.5 * (1.0 - std::abs(x) / radius) * (1.0 - std::abs(x) / radius);
     return x < 0.0 ? tail : 1.0 - tail;
+  }
+  if (filter.kind != PixelFilter::Kind::Gaussian) {
+    static std::map<std::pair<float, double>, LobedFilter> known;
+    const std::pair key(filter.kind == PixelFilter::Kind::Lanczos ? filter.tau : -filter.c, radius);
+    const auto& sums = known.try_emplace(key, filter, radius).first->second;
+    return LobedFilter::share(sums.magnitude, 0.5 + 0.5 * x / radius);
   }
   // A Gaussian lowered by its value at the radius.
   const double s = double(filter.sigma), edge = std::exp(-0.5 * radius * radius / (s * s));
@@ -123,13 +171,24 @@ double filter_distribution(const PixelFilter& filter, double radius, double x) {
   return weight_below(x) / weight_below(radius);
 }
 
+// With negative lobes.
+std::vector<PixelFilter> lobed_filters() {
+  using Kind = PixelFilter::Kind;
+  PixelFilter mitchell{Kind::Mitchell, glm::vec2(2.0f)}, catmull_rom = mitchell;
+  catmull_rom.b = 0.0f, catmull_rom.c = 0.5f;
+  PixelFilter lanczos{Kind::Lanczos, glm::vec2(4.0f, 3.0f)};
+  return {mitchell, catmull_rom, lanczos};
+}
+
 std::vector<PixelFilter> filters() {
   using Kind = PixelFilter::Kind;
-  return {{Kind::Triangle, glm::vec2(1.0f)},
-          {Kind::Triangle, glm::vec2(2.0f, 1.5f)},
-          {Kind::Gaussian, glm::vec2(1.5f), 0.5f},
-          {Kind::Gaussian, glm::vec2(2.0f, 1.0f), 1.0f},
-          {Kind::Box, glm::vec2(1.0f, 0.5f)}};
+  std::vector<PixelFilter> all = lobed_filters();
+  all.insert(all.begin(), {{Kind::Triangle, glm::vec2(1.0f)},
+                           {Kind::Triangle, glm::vec2(2.0f, 1.5f)},
+                           {Kind::Gaussian, glm::vec2(1.5f), 0.5f},
+                           {Kind::Gaussian, glm::vec2(2.0f, 1.0f), 1.0f},
+                           {Kind::Box, glm::vec2(1.0f, 0.5f)}});
+  return all;
 }
 
 TEST(Camera, FilterTableInvertsTheDistribution) {
@@ -180,6 +239,76 @@ TEST(Camera, SamplesFollowTheFilter) {
         << "filter " << int(filter.kind) << ": chi-square " << test.chi_square.statistic << " with "
         << test.chi_square.degrees << " degrees of freedom";
   }
+}
+
+// What a sample of each cell counts makes up for the sign that sampling cannot have: constants and
+// ramps stay what they are, and so does every part of the filter.
+TEST(Camera, WeightsGiveFiltersTheirNegativeLobes) {
+  for (const PixelFilter& filter : lobed_filters()) {
+    const FlatCamera camera({}, {64, 64, filter});
+    EXPECT_TRUE(camera.flat.features & bit(Feature::FilterSigns));
+    const auto expect_weights = [&](const float* offsets, const float* weights, double radius) {
+      const LobedFilter sums(filter, radius);
+      const double all = sums.magnitude.back() / sums.value.back();
+      double mean = 0.0, ramp = 0.0;
+      int between = 0;
+      for (int i = 0; i < filter_cells; ++i) {
+        const double weight = double(weights[i]);
+        mean += weight / filter_cells;
+        ramp += weight * 0.5 * (double(offsets[i]) + double(offsets[i + 1])) / filter_cells;
+        const auto below = [&](float offset) {
+          return LobedFilter::share(sums.value, 0.5 + 0.5 * double(offset) / radius);
+        };
+        const double share = below(offsets[i + 1]) - below(offsets[i]);
+        EXPECT_NEAR(weight, share * filter_cells, 2e-3);
+        if (std::abs(std::abs(weight) - all) > 1e-2) ++between;  // where the sign changes
+      }
+      EXPECT_NEAR(mean, 1.0, 1e-6);
+      EXPECT_NEAR(ramp, 0.0, 1e-5);
+      EXPECT_LE(between, filter.kind == PixelFilter::Kind::Lanczos ? 8 : 2);
+      EXPECT_GT(all, 1.05);
+    };
+    expect_weights(camera.data.filter_x, camera.data.filter_weight_x, double(filter.radius.x));
+    expect_weights(camera.data.filter_y, camera.data.filter_weight_y, double(filter.radius.y));
+  }
+  for (const PixelFilter& filter : filters()) {
+    const bool lobes = filter.kind >= PixelFilter::Kind::Mitchell;
+    const FlatCamera camera({}, {64, 64, filter});
+    EXPECT_EQ((camera.flat.features & bit(Feature::FilterSigns)) != 0, lobes);
+    EXPECT_EQ(camera.data.filter_weight_x != nullptr, lobes);
+  }
+  // The cubic B-spline has none.
+  PixelFilter spline = lobed_filters()[0];
+  spline.b = 1.0f, spline.c = 0.0f;
+  EXPECT_FALSE(FlatCamera({}, {64, 64, spline}).flat.features & bit(Feature::FilterSigns));
+}
+
+TEST(Camera, FiltersThatCancelThemselvesAreErrors) {
+  PixelFilter filter{PixelFilter::Kind::Mitchell, glm::vec2(2.0f)};
+  for (const float c : {1e4f, std::numeric_limits<float>::infinity(), std::nanf("")}) {
+    filter.c = c;
+    EXPECT_THROW(FlatCamera({}, {64, 64, filter}), Error);
+  }
+}
+
+TEST(Camera, WeightsHaveTheSameBitsAtEveryWidth) {
+  const FlatCamera camera({}, {64, 64, lobed_filters()[2]});
+  for_each_width([&](auto width) {
+    constexpr int W = width();
+    using V = Float<W>;
+    for (std::uint32_t first = 0; first < 1024; first += W) {
+      float u[W], v[W];
+      for (int k = 0; k < W; ++k) {
+        const Vec2<float> at = uniform2(first + std::uint32_t(k), 4);
+        u[k] = at.x, v[k] = at.y;
+      }
+      u[0] = 0.0f, v[0] = one_minus_epsilon;
+      const V wide = filter_weight(camera.data, Vec2<V>(load<V>(u), load<V>(v)));
+      for (int k = 0; k < W; ++k) {
+        ASSERT_TRUE(same_value(wide[k], filter_weight(camera.data, Vec2<float>(u[k], v[k]))));
+      }
+    }
+  });
 }
 
 TEST(Camera, HasTheSameBitsAtEveryWidth) {

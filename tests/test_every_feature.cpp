@@ -24,7 +24,7 @@ class EveryFeature : public TestWithImages {
   }
 
   struct Textures {
-    int image, checks, product, blend, normals;
+    int image, fine, checks, product, blend, normals;
   };
   Textures add_textures(SceneDescription& d) const {
     ImageTexture image = texture_of(exr("waves", 9, 7, waves), TextureFilter::Bilinear);
@@ -32,13 +32,17 @@ class EveryFeature : public TestWithImages {
     image.uv.u_row = {1.7f, 0.3f};
     Textures t{};
     t.image = add_texture(d, image);
+    image.filter = TextureFilter::Trilinear;
+    image.uv.u_row *= 15.0f;
+    image.uv.v_row *= 12.0f;
+    t.fine = add_texture(d, image);
     CheckerboardTexture checks;
     checks.even = textured(t.image);
     checks.odd = glm::vec3(0.2f, 0.7f, 0.5f);
     checks.uv.u_row = {5.0f, 0.0f};
     checks.uv.v_row = {0.0f, 3.0f};
     t.checks = add_texture(d, checks);
-    t.product = add_texture(d, ProductTexture{textured(t.image), glm::vec3(0.9f, 0.8f, 0.7f)});
+    t.product = add_texture(d, ProductTexture{textured(t.fine), glm::vec3(0.9f, 0.8f, 0.7f)});
     t.blend = add_texture(d, MixTexture{textured(t.checks), textured(t.product), 0.3f});
     t.normals = add_texture(d, texture_of(exr("normals", 5, 5, [](int x, int y) {
                               return 0.5f + 0.5f * glm::normalize(glm::vec3(x - 2, 2 - y, 4));
@@ -48,7 +52,7 @@ class EveryFeature : public TestWithImages {
 
   static std::vector<Material> diffuse_materials(const Textures& t) {
     Material bumpy = DiffuseMaterial{textured(t.checks)};
-    bumpy.bump = textured_number(t.image, 0.2f);
+    bumpy.bump = textured_number(t.fine, 0.02f);
     Material mapped = DiffuseMaterial{textured(t.blend)};
     mapped.normal_map = t.normals;
     mapped.normal_scale = 0.8f;
@@ -101,7 +105,7 @@ class EveryFeature : public TestWithImages {
   // Of the materials before: glass with metal, and that with diffuse ones.
   static void add_mixes(SceneDescription& d, const Textures& t) {
     const int n = int(d.materials.size());
-    add_material(d, MixMaterial{n - 8, n - 5, textured_number(t.image)});
+    add_material(d, MixMaterial{n - 8, n - 5, textured_number(t.fine)});
     add_material(d, MixMaterial{n, 0, 0.4f});
   }
 
@@ -165,7 +169,7 @@ class EveryFeature : public TestWithImages {
     set_uvs(d, d.shapes.size() - 1);
     add_lights(d, t);
     d.environment = glm::vec3(0.3f, 0.4f, 0.5f);
-    d.film.filter.kind = PixelFilter::Kind::Gaussian;
+    d.film.filter.kind = PixelFilter::Kind::Mitchell;
     d.film.filter.radius = glm::vec2(1.5f);
     look_straight(d, {0, 3, 8}, {0, 1.2f, 0}, 4.5f, 23, 17);
     if (map_and_lens) {
@@ -286,6 +290,7 @@ TEST_F(EveryFeature, TakenAwayOneByOneGivesTheBytesOfTheGeneralKernel) {
   std::erase_if(d.shapes, [](const Shape& s) {
     return s.emission && (s.emission->two_sided || s.emission->radiance.value.x == 5.0f);
   });
+  d.film.filter.kind = PixelFilter::Kind::Gaussian;
   EXPECT_EQ(compare("quad light"), all_features);
   for (Material& m : d.materials) {
     const MaterialModel model = m.model;

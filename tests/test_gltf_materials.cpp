@@ -102,6 +102,11 @@ TEST_F(GltfMaterials, Samplers) {
   EXPECT_EQ(b.wrap_u, TextureWrap::Repeat);
   EXPECT_EQ(b.wrap_v, TextureWrap::Repeat);
   EXPECT_EQ(b.filter, TextureFilter::Trilinear);
+  for (const char* mipmaps : {"9984", "9985", "9986"}) {
+    EXPECT_EQ(with_sampler(std::string("\"minFilter\":") + mipmaps).filter,
+              TextureFilter::Trilinear);
+  }
+  EXPECT_EQ(with_sampler("\"minFilter\":9728").filter, TextureFilter::Bilinear);
   EXPECT_EQ(with_sampler("\"minFilter\":9729").filter, TextureFilter::Bilinear);
   EXPECT_EQ(with_sampler("").filter, TextureFilter::Bilinear);
 }

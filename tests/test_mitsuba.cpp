@@ -271,10 +271,29 @@ TEST_F(Mitsuba, OtherCamerasFiltersAndCounts) {
   EXPECT_EQ(flat.defaults.depth, 64);
   EXPECT_TRUE(warns(flat, "<integrator type=\"bdpt\">"));
 
-  const SceneDescription lanczos = read(
-      "<sensor type=\"perspective\"><film type=\"hdrfilm\"><rfilter type=\"lanczos\"/></film>"
-      "</sensor>");
-  EXPECT_TRUE(warns(lanczos, "<rfilter type=\"lanczos\"> is not supported"));
+  const auto with_filter = [&](const std::string& type, const std::string& parameters) {
+    return read("<sensor type=\"perspective\"><film type=\"hdrfilm\"><rfilter type=\"" + type +
+                "\">" + parameters + "</rfilter></film></sensor>");
+  };
+  EXPECT_TRUE(warns(with_filter("round", ""), "<rfilter type=\"round\"> is not supported"));
+  const PixelFilter lanczos =
+      with_filter("lanczos", "<integer name=\"lobes\" value=\"2\"/>").film.filter;
+  EXPECT_EQ(lanczos.kind, PixelFilter::Kind::Lanczos);
+  EXPECT_EQ(lanczos.radius, glm::vec2(2.0f));
+  EXPECT_EQ(lanczos.tau, 2.0f);
+  EXPECT_EQ(with_filter("lanczos", "").film.filter.tau, 3.0f);
+  const PixelFilter mitchell =
+      with_filter("mitchell", "<float name=\"C\" value=\"0.25\"/>").film.filter;
+  EXPECT_EQ(mitchell.kind, PixelFilter::Kind::Mitchell);
+  EXPECT_EQ(mitchell.radius, glm::vec2(2.0f));
+  EXPECT_FLOAT_EQ(mitchell.b, 1.0f / 3.0f);
+  EXPECT_EQ(mitchell.c, 0.25f);
+  const PixelFilter catmull_rom = with_filter("catmullrom", "").film.filter;
+  EXPECT_EQ(catmull_rom.b, 0.0f);
+  EXPECT_EQ(catmull_rom.c, 0.5f);
+  expect_one_line_with(
+      message_of([&] { with_filter("mitchell", "<float name=\"B\" value=\"9\"/>"); }),
+      "needs B and C between -2 and 2");
   expect_one_line_with(
       error_of("<sensor type=\"perspective\"><film type=\"hdrfilm\"><integer name=\"width\" "
                "value=\"1000000\"/></film></sensor>"),

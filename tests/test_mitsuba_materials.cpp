@@ -243,6 +243,8 @@ TEST_F(Mitsuba, Bitmaps) {
   EXPECT_EQ(plain.wrap_u, TextureWrap::Repeat);
   EXPECT_NE(plain.where.find("scene.xml:2"), std::string::npos);
   EXPECT_EQ(texture("", true).filter, TextureFilter::Trilinear) << "ewa";
+  EXPECT_EQ(texture(string("filterType", "trilinear"), true).filter, TextureFilter::Trilinear);
+  EXPECT_EQ(texture(string("filterType", "nearest"), true).filter, TextureFilter::Nearest);
   EXPECT_EQ(texture(string("filter_type", "nearest"), false).filter, TextureFilter::Nearest);
   EXPECT_EQ(texture(string("wrapMode", "mirror") + string("wrapModeV", "zero"), true).wrap_u,
             TextureWrap::Mirror);

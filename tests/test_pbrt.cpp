@@ -71,9 +71,40 @@ TEST_F(Pbrt, PixelFiltersOfBothVersions) {
   EXPECT_FLOAT_EQ(v3.sigma, 0.25f);
   EXPECT_FLOAT_EQ(filter("PixelFilter \"gaussian\" Film \"image\"").sigma, 0.5f);
   EXPECT_FLOAT_EQ(filter("PixelFilter \"gaussian\" \"float sigma\" 0.7").sigma, 0.7f);
-  const SceneDescription other = read("PixelFilter \"sinc\" WorldBegin");
+  const SceneDescription other = read("PixelFilter \"sync\" WorldBegin");
   EXPECT_EQ(other.film.filter.kind, PixelFilter::Kind::Gaussian);
-  EXPECT_TRUE(warns(other, "scene.pbrt:1: PixelFilter \"sinc\" is not supported"));
+  EXPECT_TRUE(warns(other, "scene.pbrt:1: PixelFilter \"sync\" is not supported"));
+}
+
+TEST_F(Pbrt, PixelFiltersWithNegativeLobes) {
+  const auto filter = [&](const std::string& text) {
+    return read(text + " WorldBegin").film.filter;
+  };
+  for (const std::string film : {"", " Film \"image\""}) {
+    const PixelFilter mitchell = filter("PixelFilter \"mitchell\"" + film);
+    EXPECT_EQ(mitchell.kind, PixelFilter::Kind::Mitchell);
+    EXPECT_EQ(mitchell.radius, glm::vec2(2.0f));
+    EXPECT_FLOAT_EQ(mitchell.b, 1.0f / 3.0f);
+    EXPECT_FLOAT_EQ(mitchell.c, 1.0f / 3.0f);
+    const PixelFilter sinc = filter("PixelFilter \"sinc\"" + film);
+    EXPECT_EQ(sinc.kind, PixelFilter::Kind::Lanczos);
+    EXPECT_EQ(sinc.radius, glm::vec2(4.0f));
+    EXPECT_FLOAT_EQ(sinc.tau, 3.0f);
+  }
+  const PixelFilter sharp = filter("PixelFilter \"mitchell\" \"float B\" 0 \"float C\" .5");
+  EXPECT_EQ(sharp.b, 0.0f);
+  EXPECT_EQ(sharp.c, 0.5f);
+  const PixelFilter narrow =
+      filter("PixelFilter \"sinc\" \"float xwidth\" 3 \"float tau\" 2 Film \"image\"");
+  EXPECT_EQ(narrow.radius, glm::vec2(3.0f, 4.0f));
+  EXPECT_EQ(narrow.tau, 2.0f);
+  expect_one_line_with(error_of("PixelFilter \"mitchell\" \"float B\" 9 WorldBegin"),
+                       "needs B between -2 and 2");
+  expect_one_line_with(error_of("PixelFilter \"sinc\" \"float tau\" 0 WorldBegin"),
+                       "needs a tau above 0");
+  // v2's sinc has another window.
+  EXPECT_TRUE(warns(read("PixelFilter \"sinc\" SurfaceIntegrator \"path\" WorldBegin WorldEnd"),
+                    "PixelFilter \"sinc\" is not supported"));
 }
 
 TEST_F(Pbrt, CameraLooksWhereItIsTold) {

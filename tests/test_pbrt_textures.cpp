@@ -63,7 +63,10 @@ TEST_F(PbrtTextures, ImagesOfV3AndV2) {
         read_texture("imagemap", "\"string filename\" \"a.png\" " + rest, "", "color", header));
   };
   EXPECT_EQ(image(v3, "").encoding, TextureEncoding::ByFormat);
-  EXPECT_EQ(image(v3, "").filter, TextureFilter::Trilinear);
+  for (const std::string& header : {v3, v2}) {
+    EXPECT_EQ(image(header, "").filter, TextureFilter::Trilinear) << "ewa";
+    EXPECT_EQ(image(header, "\"bool trilinear\" true").filter, TextureFilter::Trilinear);
+  }
   EXPECT_EQ(image(v3, "\"bool gamma\" false").encoding, TextureEncoding::Linear);
   EXPECT_EQ(image(v3, "\"bool gamma\" true").encoding, TextureEncoding::Srgb);
   EXPECT_EQ(image(v2, "").encoding, TextureEncoding::Linear);

@@ -1,6 +1,6 @@
 // Renders of textures on surfaces, of holes in them and of maps that turn their normals, against
-// closed forms. Diffuse squares under a constant sky have no variance: they show their albedo.
-#include "tests/t_images.h"
+// closed forms.
+#include "tests/t_square.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -14,21 +14,6 @@ using builtin::add_material;
 using builtin::add_rectangle;
 
 constexpr double pi_double = 3.14159265358979323846;
-constexpr float sky = 2.0f;
-
-// The square [-1, 1]^2 in z = 0 that fills the image: u to the right, v down.
-SceneDescription square(const Material& material, int side = 8) {
-  SceneDescription d;
-  d.name = "square";
-  add_rectangle(d, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, add_material(d, material));
-  set_uvs(d, 0);
-  look_straight(d, {0, 0, 3}, {0, 0, 0}, 2.0f, side, side);
-  d.environment = glm::vec3(sky);
-  return d;
-}
-
-// Samples lie in the middle of pixels.
-void sample_centres(SceneDescription& d) { d.film.filter.radius = glm::vec2(1e-4f); }
 
 // Every pixel of one render, in which there is no noise.
 void expect_pixels(const Scene& scene, const PixelFunction& expected, float tolerance = 1e-4f) {

@@ -3,6 +3,7 @@
 #include "core/simd_math.h"
 
 #include "core/frame.h"
+#include "core/simd_exp.h"
 #include "tests/widths.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace lockstep {
@@ -100,6 +102,34 @@ TEST(Hash, UnitFloatStaysBelowOne) {
   EXPECT_EQ(unit_float(255u), 0.0f);
   EXPECT_EQ(unit_float(~0u), 1.0f - 0x1p-24f);
   EXPECT_EQ(one_minus_epsilon, std::nextafter(1.0f, 0.0f));
+}
+
+TEST(SimdMath, Log2KeepsItsBound) {
+  const auto expect_near = [](float x) {
+    const double expected = std::log2(double(x));
+    const double bound = 2e-7 + std::ldexp(std::abs(expected), -24);
+    ASSERT_LT(std::abs(double(log2(x)) - expected), bound) << x;
+  };
+  constexpr int steps = 1 << 20;
+  for (int i = 0; i < steps; ++i) expect_near(0.5f + 2.0f * float(i) / steps);
+  for (int n = -126; n <= 127; ++n) {
+    const float power = std::ldexp(1.0f, n);
+    EXPECT_EQ(log2(power), float(n));
+    for (const float m : {1.0f, 1.41421354f, 1.41421366f, 1.7f}) expect_near(m * power);
+    expect_near(std::nextafter(power, 1.0f));
+  }
+  expect_near(std::numeric_limits<float>::max());
+  for_each_width([&](auto width) {
+    constexpr int W = width();
+    for (std::uint32_t first = 0; first < 4096; first += W) {
+      float x[W];
+      for (int k = 0; k < W; ++k) {
+        x[k] = std::exp2(200.0f * uniform2(first + std::uint32_t(k), 9).x - 100.0f);
+      }
+      const Float<W> wide = log2(load<Float<W>>(x));
+      for (int k = 0; k < W; ++k) ASSERT_TRUE(same_value(wide[k], log2(x[k])));
+    }
+  });
 }
 
 TEST(Vec, ProductsMatchGlmAndAreTheSameAtEveryWidth) {

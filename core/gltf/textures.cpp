@@ -50,7 +50,7 @@ TextureWrap wrap_mode(int mode) {
   }
 }
 
-// Where the file leaves a filter open, it is the finest that costs no pyramid.
+// Where the file leaves the filter of what is far away open, as it may, nothing is averaged.
 TextureFilter filter_of(const tinygltf::Sampler& sampler) {
   if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) return TextureFilter::Nearest;
   switch (sampler.minFilter) {

@@ -45,6 +45,11 @@ PixelFilter read_filter(State& state, const Properties* film) {
   const auto gaussian = [](float sigma) {
     return PixelFilter{PixelFilter::Kind::Gaussian, glm::vec2(4.0f * sigma), sigma};
   };
+  const auto mitchell = [](float b, float c) {
+    PixelFilter filter{PixelFilter::Kind::Mitchell, glm::vec2(2.0f)};
+    filter.b = b, filter.c = c;
+    return filter;
+  };
   const std::vector<const Property*> filters =
       film != nullptr ? film->objects("rfilter") : std::vector<const Property*>{};
   if (filters.empty()) return gaussian(0.5f);
@@ -58,10 +63,20 @@ PixelFilter read_filter(State& state, const Properties* film) {
     filter = {PixelFilter::Kind::Triangle, glm::vec2(radius), 0.5f};
   } else if (set.type() == "gaussian") {
     filter = gaussian(set.get_float("stddev", 0.5f));
+  } else if (set.type() == "mitchell") {
+    filter = mitchell(set.get_float("B", 1.0f / 3.0f), set.get_float("C", 1.0f / 3.0f));
+  } else if (set.type() == "catmullrom") {
+    filter = mitchell(0.0f, 0.5f);
+  } else if (set.type() == "lanczos") {
+    filter = {PixelFilter::Kind::Lanczos, glm::vec2(float(set.get_int("lobes", 3)))};
+    filter.tau = filter.radius.x;
   } else {
     state.warnings.add(
         set.where(), "<rfilter type=\"" + set.type() + "\"> is not supported; a Gaussian is used");
     for (const char* tag : {"float", "integer"}) set.objects(tag);
+  }
+  if (!(std::abs(filter.b) <= 2.0f && std::abs(filter.c) <= 2.0f)) {
+    fail(set.where(), set.shown() + " needs B and C between -2 and 2");
   }
   if (!(filter.radius.x > 0.0f && filter.radius.x <= 64.0f)) {
     fail(set.where(), set.shown() + " needs a radius between 0 and 64 pixels");

@@ -30,6 +30,15 @@ float get_sigma(Version version, const ParameterSet& set) {
   return sigma;
 }
 
+// A parameter of Mitchell's filter. Far from [0, 1] its lobes nearly cancel each other.
+float get_spline(const ParameterSet& set, const char* name) {
+  const float value = set.get_float(name, 1.0f / 3.0f);
+  if (!(value >= -2.0f && value <= 2.0f)) {
+    fail(set.where(), set.owner() + " needs " + name + " between -2 and 2");
+  }
+  return value;
+}
+
 PixelFilter default_filter(Version version) {
   if (version != Version::v4) return {PixelFilter::Kind::Box, glm::vec2(0.5f), 0.5f};
   return {PixelFilter::Kind::Gaussian, glm::vec2(1.5f), 0.5f};
@@ -67,6 +76,14 @@ PixelFilter make_filter(Version version, const std::string& type, const Paramete
   } else if (type == "gaussian") {
     const float radius = version != Version::v4 ? 2.0f : 1.5f;
     filter = {PixelFilter::Kind::Gaussian, get_radius(*set, radius), get_sigma(version, *set)};
+  } else if (type == "mitchell") {
+    filter = {PixelFilter::Kind::Mitchell, get_radius(*set, 2.0f)};
+    filter.b = get_spline(*set, "B");
+    filter.c = get_spline(*set, "C");
+  } else if (type == "sinc" && version != Version::v2) {  // v2's has another window
+    filter = {PixelFilter::Kind::Lanczos, get_radius(*set, 4.0f)};
+    filter.tau = set->get_float("tau", filter.tau);
+    if (!(filter.tau > 0.0f)) fail(set->where(), set->owner() + " needs a tau above 0");
   } else {
     warnings.add(set->where(),
                  "PixelFilter \"" + type + "\" is not supported; pbrt's default filter is used");
