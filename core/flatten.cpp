@@ -245,12 +245,15 @@ FlatScene flatten(const SceneDescription& description, glm::vec3 environment_rad
 
 std::uint64_t fingerprint(const FlatScene& flat) {
   Fingerprint print;
-  const CameraData& c = flat.camera;
-  for (const glm::vec3 v : {c.origin, c.right, c.down, c.corner, c.lens_x, c.lens_y}) {
+  const CameraData& camera = flat.camera;
+  for (const glm::vec3 v :
+       {camera.origin, camera.right, camera.down, camera.corner, camera.lens_x, camera.lens_y}) {
     print.add_all(std::array{v.x, v.y, v.z});
   }
-  print.add_all(std::array{float(c.width), float(c.height), c.focal_distance, c.footprint});
-  print.add_all(std::array{std::int32_t(flat.features), flat.environment_light});
+  print.add_all(std::array{float(camera.width), float(camera.height), camera.focal_distance,
+                           camera.footprint});
+  print.add_all(std::array{std::int32_t(flat.features), std::int32_t(flat.features >> 32),
+                           flat.environment_light});
   using Floats = std::initializer_list<const std::vector<float>*>;
   for (const auto* values :
        Floats{&flat.positions, &flat.normals, &flat.uvs, &flat.spheres, &flat.material_parameters,
