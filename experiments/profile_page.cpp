@@ -1,5 +1,6 @@
 #include "experiments/profile_page.h"
 
+#include "experiments/html_page.h"
 #include "experiments/metrics.h"
 #include "experiments/report.h"
 
@@ -64,15 +65,6 @@ Json errors_json(const ProfileErrors& errors) {
   return {{"spp", errors.spp}, {"cpu_seconds", errors.cpu_seconds}, {"values", values}};
 }
 
-// JSON that may stand in a script element: no "</" ends it early.
-std::string embeddable(const Json& json) {
-  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) {
-    text.replace(at, 2, "<\\/");
-  }
-  return text;
-}
-
 }  // namespace
 
 Json profile_json(const Profile& profile, const ProfileSettings& settings) {
@@ -113,22 +105,13 @@ Json profile_json(const Profile& profile, const ProfileSettings& settings) {
 
 std::string profile_html(const Profile& profile, const ProfileSettings& settings) {
   const std::string data = embeddable(profile_json(profile, settings));
-  const std::pair<std::string_view, std::string_view> parts[] = {
+  const PagePart parts[] = {
       {"{{CSS}}", profile_assets::style},
       {"{{D3}}", report_assets::d3},
       {"{{DATA}}", data},
       {"{{JS}}", profile_assets::script},
   };
-  // Parts stand in the page in this order; what is filled in is never searched again.
-  std::string html;
-  std::string_view rest = profile_assets::page;
-  for (const auto& [mark, text] : parts) {
-    const std::size_t at = rest.find(mark);
-    html += rest.substr(0, at);
-    html += text;
-    rest.remove_prefix(at + mark.size());
-  }
-  return html += rest;
+  return filled_page(profile_assets::page, parts);
 }
 
 }  // namespace lockstep

@@ -1,28 +1,14 @@
 #include "experiments/report.h"
 
 #include "experiments/display_image.h"
+#include "experiments/html_page.h"
 #include "experiments/series_style.h"
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace lockstep {
 namespace {
-
-// JSON that may stand in a script element: without "<", nothing in it ends or hides that. File
-// names that are not UTF-8 lose the bytes that are not.
-std::string embeddable(const nlohmann::ordered_json& json) {
-  using Json = nlohmann::ordered_json;
-  std::string text;
-  for (char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    if (c == '<')
-      text += "\\u003c";
-    else
-      text += c;
-  }
-  return text;
-}
 
 // Display codes of magma, RGB after RGB, for 256 values from 0 to 1.
 nlohmann::ordered_json magma_codes() {
@@ -42,20 +28,11 @@ std::string report_html(const nlohmann::ordered_json& summary, const ReportImage
                                        {"magma", magma_codes()},
                                        {"colours", kSeriesColours},
                                        {"series_per_dash", kSeriesPerDash}});
-  const std::pair<std::string_view, std::string_view> parts[] = {
+  const PagePart parts[] = {
       {"{{CSS}}", report_assets::style}, {"{{D3}}", report_assets::d3},     {"{{DATA}}", data},
       {"{{IMAGES}}", images.elements},   {"{{JS}}", report_assets::script},
   };
-  // Parts stand in the page in this order; what is filled in is never searched again.
-  std::string html;
-  std::string_view rest = report_assets::page;
-  for (const auto& [mark, text] : parts) {
-    const std::size_t at = rest.find(mark);
-    html += rest.substr(0, at);
-    html += text;
-    rest.remove_prefix(at + mark.size());
-  }
-  return html += rest;
+  return filled_page(report_assets::page, parts);
 }
 
 }  // namespace lockstep

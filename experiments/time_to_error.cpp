@@ -88,7 +88,7 @@ std::string factor_text(double value) {
                                        : fmt::format("{:.2g}", value);
 }
 
-Json ratio_json(const std::optional<Ratio>& ratio) {
+Json time_ratio_json(const std::optional<Ratio>& ratio) {
   if (!ratio) return nullptr;
   Json json = {{"value", ratio->value}, {"seeds", ratio->pairs}};
   if (ratio->low) json["interval_95"] = {*ratio->low, *ratio->high};
@@ -103,7 +103,7 @@ Json times_json(const TimesToError& times, const CompareSettings& settings) {
   for (const TimeOfSampler& time : times.samplers) {
     Json entry = {{"sampler", to_string(settings.samplers[time.sampler])},
                   {"cpu_seconds", nullptr},
-                  {"ratio", ratio_json(time.ratio)}};
+                  {"ratio", time_ratio_json(time.ratio)}};
     if (time.cpu_seconds) entry["cpu_seconds"] = *time.cpu_seconds;
     json["samplers"].push_back(entry);
   }

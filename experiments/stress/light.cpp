@@ -13,7 +13,6 @@ using builtin::add_rectangle;
 using builtin::add_sphere;
 
 constexpr double kAlbedo = double(floor_albedo);
-constexpr const char* kFormFactor = "form factor of the lamp, Howell's B-3";
 
 using Make = std::function<SceneDescription(const std::string&)>;
 

@@ -15,6 +15,7 @@ namespace lockstep::stress {
 
 inline constexpr double pi_double = 3.14159265358979323846;
 inline constexpr float floor_albedo = 0.6f;
+inline constexpr const char* kFormFactor = "form factor of the lamp, Howell's B-3";
 
 // The families' lists.
 std::vector<StressCase> scale_cases();

@@ -352,7 +352,10 @@ template <class F>
 double mean_of_samples(F value, float first) {
   constexpr int waves = (1 << 26) / wave_paths;
   Film film(1, 1);
+  SceneData scene;
+  scene.features = 0;
   TileJob job;
+  job.scene = &scene;
   job.film = film.view();
   const auto paths = std::make_unique<PathTable>();
   paths->count = wave_paths;
@@ -365,7 +368,7 @@ double mean_of_samples(F value, float first) {
       paths->pixel[i] = 0;
       paths->sample[i] = std::uint32_t(wave * wave_paths + i);
     }
-    end_paths(job, *paths, counts);
+    end_paths<all_features>(job, *paths, counts);
   }
   return film.sums[0] / film.sums[3];
 }

@@ -15,7 +15,6 @@ using builtin::add_rectangle;
 
 constexpr float kRadiance = 5.0f;
 constexpr float kBoxEmission = 0.7f, kBoxAlbedo = 0.6f;
-constexpr const char* kFormFactor = "form factor of the lamp, Howell's B-3";
 constexpr const char* kFurnace = "closed furnace: L (1 + a + ... + a^depth), whatever its shape";
 
 SceneDescription floor_under_lamp() {
