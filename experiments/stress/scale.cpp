@@ -83,7 +83,7 @@ std::vector<StressCase> moved() {
                                        return scene;
                                      },
                                  .expected = kUnderLamp,
-                                 .rounding = 2e-2}});
+                                 .rounding = 1e-2}});
   }
   const auto tilted = [](const std::string&) {
     SceneDescription scene = floor_under_lamp();
@@ -93,7 +93,7 @@ std::vector<StressCase> moved() {
   };
   cases.push_back({"moved-1e+03-tilted-lamp", "scale",
                    "a tilted lamp a thousand times the scene's size from the origin", kFormFactor,
-                   StressScene{.make = tilted, .expected = kUnderLamp, .rounding = 2e-2}});
+                   StressScene{.make = tilted, .expected = kUnderLamp, .rounding = 1e-2}});
   return cases;
 }
 
