@@ -22,12 +22,13 @@ function errorPoints(sampler, i, across) {
 // Band, seeds, median line and median marks of one sampler.
 function errorCurve(layer, sampler, i, across, x, y) {
   const name = selection.metric.name;
-  const rungs = sampler.rungs.filter((r) => across.rung(r) > 0);
+  // What is not finite stands nowhere.
+  const rungs = sampler.rungs.filter((r) => across.rung(r) > 0 && r[name].median !== null);
   const at = (r) => x(across.rung(r));
   layer.append("path").attr("class", "band").style("fill", colour(i)).attr("d", d3.svg.area()
     .x(at).y0((r) => y(r[name].p5)).y1((r) => y(r[name].p95))(rungs));
   rungs.forEach((r) => {
-    r.runs.forEach((run) => layer.append("circle").attr({ class: "seed", r: 2.6, cx: x(across.run(r, run)), cy: y(run[name]),
+    r.runs.filter((run) => run[name] !== null).forEach((run) => layer.append("circle").attr({ class: "seed", r: 2.6, cx: x(across.run(r, run)), cy: y(run[name]),
       "data-sampler": sampler.sampler, "data-spp": r.spp, "data-seed": run.seed }).style("fill", colour(i)));
   });
   layer.append("path").attr({ class: "median", "data-sampler": sampler.sampler, "stroke-dasharray": dash(i) })

@@ -23,7 +23,7 @@ async function open(browser, options) {
   const context = await browser.newContext(options);
   await context.setOffline(true);
   const page = await context.newPage();
-  page.setDefaultTimeout(20000);
+  page.setDefaultTimeout(60000);
   page.problems = [];
   page.on("pageerror", (error) => page.problems.push(error.message));
   page.on("console", (message) => { if (message.type() === "error") page.problems.push(message.text()); });
