@@ -175,7 +175,7 @@ Measurement measurement_of(const Phase& phase, int sampler, const RenderResult& 
   run.lanes = stats.lanes;
   run.lanes_active = stats.lanes_active;
   run.nonfinite = stats.nonfinite;
-  run.errors = evaluate_metrics(phase.result.reference.image, render.image);
+  run.errors = evaluate(*phase.reference, render.image).values;
   run.packet_width = stats.width;
   run.threads = stats.threads;
   run.has_weights = render.weights.has_value();
@@ -299,6 +299,7 @@ void prepare_reference(Phase& phase, double work) {
   SceneComparison& result = phase.result;
   result.reference =
       make_reference(phase.settings, result, phase.scene, phase.render_settings, show);
+  phase.reference = prepare_reference(result.reference.image);
   result.exposure = preview_exposure(result.reference.image);
   result.reference_png = fmt::format("{}-reference.png", result.label);
   write_image(in_directory(phase.settings, result.reference_png),

@@ -5,9 +5,11 @@
 #include "experiments/compare.h"
 #include "experiments/errors_csv.h"
 #include "experiments/journal.h"
+#include "experiments/metrics.h"
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -26,6 +28,7 @@ struct Phase {
   std::function<bool(double work, std::string_view label)> progress;
 
   std::string conditions = {};                              // see conditions_of() in the source
+  std::optional<PreparedReference> reference = {};          // of the result's reference
   std::set<std::tuple<int, std::uint32_t, int>> done = {};  // sampler, seed, spp
 };
 
