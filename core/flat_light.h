@@ -13,22 +13,35 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 // area is as good from afar.
 inline constexpr float min_solid_angle = 1e-2f;
 
+// Lanes whose light is of that kind and may have such a solid angle: a light that is small for the
+// distance of its corner has none, and if all have none the formulas are not worth their time.
+template <class V>
+LOCKSTEP_INLINE MaskOf<V> is_near(const LightRow<V>& light, LightKind kind,
+                                  const Vec3<V>& to_corner) {
+  return light.is(kind) & (light.area >= V(min_solid_angle) * dot(to_corner, to_corner));
+}
+
 // A light that is a rectangle as p sees it; of solid angle 0 where it is sampled by area.
 template <class V>
 LOCKSTEP_INLINE SphericalRectangle<V> seen_rectangle(const LightRow<V>& light, const Vec3<V>& p) {
-  const MaskOf<V> rectangle = light.is(LightKind::Parallelogram) & (light.outline > V(0.0f));
-  SphericalRectangle<V> s =
-      spherical_rectangle(light.corner - p, light.edge1, light.edge2, light.normal);
-  s.solid_angle = select(rectangle & (s.solid_angle >= V(min_solid_angle)), s.solid_angle, V(0.0f));
+  const Vec3<V> to_corner = light.corner - p;
+  const MaskOf<V> near =
+      is_near(light, LightKind::Parallelogram, to_corner) & (light.outline > V(0.0f));
+  if (none(near)) return {};
+  SphericalRectangle<V> s = spherical_rectangle(to_corner, light.edge1, light.edge2, light.normal);
+  s.solid_angle = select(near & (s.solid_angle >= V(min_solid_angle)), s.solid_angle, V(0.0f));
   return s;
 }
 
 // As above, for a triangle.
 template <class V>
 LOCKSTEP_INLINE SphericalTriangle<V> seen_triangle(const LightRow<V>& light, const Vec3<V>& p) {
-  SphericalTriangle<V> s = spherical_triangle(light.corner - p, light.edge1, light.edge2);
-  const MaskOf<V> usable = light.is(LightKind::Triangle) & (s.solid_angle >= V(min_solid_angle)) &
-                           (s.solid_angle <= V(max_triangle_angle));
+  const Vec3<V> to_corner = light.corner - p;
+  const MaskOf<V> near = is_near(light, LightKind::Triangle, to_corner);
+  if (none(near)) return {};
+  SphericalTriangle<V> s = spherical_triangle(to_corner, light.edge1, light.edge2);
+  const MaskOf<V> usable =
+      near & (s.solid_angle >= V(min_solid_angle)) & (s.solid_angle <= V(max_triangle_angle));
   s.solid_angle = select(usable, s.solid_angle, V(0.0f));
   return s;
 }

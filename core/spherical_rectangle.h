@@ -16,7 +16,7 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 template <class V>
 struct SphericalRectangle {
   V width, height, x0, y0, z;
-  V solid_angle;  // [0, 2 pi]; 0 in the rectangle's plane
+  V solid_angle = V(0.0f);  // [0, 2 pi]; 0 in the rectangle's plane
 };
 
 // Sines and cosines that belong to the solid angle, with its sign, of the rectangle's strip between

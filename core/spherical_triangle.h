@@ -12,8 +12,8 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 template <class V>
 struct SphericalTriangle {
   Vec3<V> to_corner, edge1, edge2;
-  V determinant;  // of the three corners; its sign says which side is seen
-  V solid_angle;  // [0, 2 pi]; 0 in the triangle's plane and where rounding would spoil it
+  V determinant;            // of the three corners; its sign says which side is seen
+  V solid_angle = V(0.0f);  // [0, 2 pi]; 0 in its plane and where rounding would spoil it
 };
 
 // Solid angle: van Oosterom and Strackee 1983.
