@@ -232,8 +232,11 @@ Comparison compare(const CompareSettings& settings, const CompareProgress& progr
                    const SceneDone& scene_done) {
   check_settings(settings);
   const std::vector<double> costs = check_scenes(settings);
+  const fs::path directory(settings.directory);
+  std::error_code error;
+  const bool goes_on = settings.resume && fs::exists(directory / kJournalFile, error);
   Journal journal = open_journal(settings);
-  if (!settings.resume) set_aside((fs::path(settings.directory) / "errors.csv").string());
+  if (!goes_on) set_aside((directory / "errors.csv").string());
   ErrorsCsv csv(settings.directory, rows_of(journal));
   Run run{settings,
           progress,

@@ -135,7 +135,8 @@ std::vector<Json> parse_lines(const std::string& text) {
 
 std::string journal_path(const std::string& directory, bool resume) {
   const std::string path = (fs::path(directory) / kJournalFile).string();
-  if (!resume) set_aside(path);
+  // A comparison that is running has its journal taken away by nobody.
+  if (!resume && !is_being_appended(path)) set_aside(path);
   return path;
 }
 

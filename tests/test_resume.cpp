@@ -174,7 +174,23 @@ TEST_F(Folders, AStoppedReferenceGoesOn) {
   EXPECT_EQ(timeless(resumed), whole);
 }
 
+TEST_F(Folders, ResultsWithoutAJournalAreSetAside) {
+  CompareSettings settings = settings_in("out");
+  settings.resume = true;
+  write("out/errors.csv", "older\n");
+  compare(settings, {});
+  EXPECT_EQ(bytes_of(path("out/errors-previous.csv")), "older\n");
+}
+
 TEST_F(Folders, OneProcessAtATimeWrites) {
+  write("out/journal.jsonl", "");
+  {
+    const AppendFile running(path("out/journal.jsonl"));
+    for (bool resume : {false, true}) {
+      expect_one_line_with(message_of([&] { Journal(path("out"), resume); }), "another process");
+    }
+  }
+  EXPECT_FALSE(fs::exists(path("out/journal-previous.jsonl")));
   AppendFile file(path("a"));
   EXPECT_TRUE(is_being_appended(path("a")));
   expect_one_line_with(message_of([&] { AppendFile second(path("a")); }), "another process");
