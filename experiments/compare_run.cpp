@@ -34,9 +34,9 @@ void warn(const Comparison& comparison) {
 }
 
 void write_results(const Comparison& comparison, const nlohmann::ordered_json& summary) {
-  using Json = nlohmann::ordered_json;
   const fs::path directory = comparison.settings.directory;
-  const std::string text = summary.dump(1, ' ', false, Json::error_handler_t::replace);
+  const std::string text =
+      summary.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   write_text_file((directory / "summary.json").string(), text + '\n');
   write_text_file((directory / "spectra.csv").string(), spectra_csv(comparison));
   write_text_file((directory / "report.html").string(),

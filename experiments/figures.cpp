@@ -67,7 +67,7 @@ std::string errors_data(const Json& summary, const Json& scene) {
       for (const Json& column : summary["table"]) {
         const Json& spread = rung[column["name"].get<std::string>()];
         for (const char* part : {"median", "p5", "p95"}) {
-          text += " " + number_or_missing(spread[part]);
+          text.append(1, ' ').append(number_or_missing(spread[part]));
         }
       }
       text += "\n";

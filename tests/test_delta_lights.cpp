@@ -105,7 +105,7 @@ TEST(DeltaLights, AddUpWithOthers) {
   d.environment = glm::vec3(0.5f);
   // E = 4 / 2^2 + 2 + pi / 2
   const double expected = (1.0 + 2.0 + 0.5 * std::numbers::pi) * reflected;
-  EXPECT_NEAR(radiance(std::move(d), "owen", 4096), expected, 5e-3 * expected);
+  EXPECT_NEAR(radiance(std::move(d), "owen", 1 << 14), expected, 2e-3 * expected);
 }
 
 // No ray finds the light: glossy reflection of it is light sampling alone, at any depth.
