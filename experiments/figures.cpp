@@ -67,7 +67,7 @@ std::string errors_data(const Json& summary, const Json& scene) {
       for (const Json& column : summary["table"]) {
         const Json& spread = rung[column["name"].get<std::string>()];
         for (const char* part : {"median", "p5", "p95"}) {
-          text.append(1, ' ').append(number_or_missing(spread[part]));
+          text += fmt::format(" {}", number_or_missing(spread[part]));
         }
       }
       text += "\n";
@@ -186,7 +186,8 @@ std::optional<int> spectrum_spp(const Json& scene) {
 // A row for each frequency: it, and each sampler's power.
 std::string spectrum_data(const Json& scene, int spp) {
   std::string text = fmt::format("# frequency, then the power of each sampler at {} spp:\n#", spp);
-  for (const Json& sampler : scene["samplers"]) text += " " + gnuplot_string(sampler["sampler"]);
+  for (const Json& sampler : scene["samplers"])
+    text += fmt::format(" {}", gnuplot_string(sampler["sampler"]));
   text += "\n";
   for (std::size_t k = 0; k < scene["frequencies"].size(); ++k) {
     text += number_or_missing(scene["frequencies"][k]);
@@ -197,7 +198,7 @@ std::string spectrum_data(const Json& scene, int spp) {
           value = number_or_missing(rung["spectrum"]["power"][k]);
         }
       }
-      text += " " + value;
+      text += fmt::format(" {}", value);
     }
     text += "\n";
   }
@@ -279,7 +280,7 @@ std::string write_figures(const Json& summary, const std::string& directory) {
     if (drawn == Drawn::NoGnuplot) {
       return (folder / "*.gp").string() + " (without PDF: gnuplot is not installed)";
     }
-    if (drawn == Drawn::No) failed += " " + script;
+    if (drawn == Drawn::No) failed += fmt::format(" {}", script);
   }
   if (!failed.empty()) return folder.string() + " (gnuplot failed on:" + failed + ")";
   return (folder / "*.pdf").string() + " and the scripts and data that make them";
