@@ -151,7 +151,7 @@ class EveryFeature : public TestWithImages {
     triangle.triangles = {{0, 1, 2}};
     builtin::add_mesh(d, triangle, black);
     d.shapes.back().emission = Emission{glm::vec3(5.0f)};
-    d.shapes.push_back(Shape{Disk{{-2, 4, 3}, {0, -1, 0}, 0.4f}, black, Emission{glm::vec3(7.0f)}});
+    d.shapes.push_back(Shape{Disk{{-2, 4, 3}, {0, -1, 0}, 0.4f}, black, Emission{glm::vec3(5.0f)}});
     SpotLight spot{{0, 4, 4}, glm::normalize(glm::vec3(0, -1, -1)), glm::vec3(20.0f), 0.95f, 0.8f};
     d.lights = {PointLight{{0.2f, 3.5f, 1.5f}, glm::vec3(3.0f)}, spot,
                 DistantLight{glm::normalize(glm::vec3(1, -2, -1)), glm::vec3(0.7f)}};
