@@ -101,10 +101,12 @@ StressCase coated_mirror() {
   m.alpha = 0.0f;
   m.coat = 1.0f;
   m.coat_alpha = 0.0f;
-  return {"coat-on-mirror", "material", "a smooth clear coat on a white mirror, at 80 degrees",
-          "what the coat does not reflect the mirror does: white in a white sky",
-          StressScene{.make = [m](const std::string&) { return square_in_sky(m, 80.0); },
-                      .rounding = 2e-3}};
+  return {
+      "coat-on-mirror", "material", "a smooth clear coat on a white mirror, at 80 degrees",
+      "what the coat does not reflect the mirror does, but for 2e-3: of a lobe this wide the coat "
+      "takes its share at the more grazing of both directions",
+      StressScene{.make = [m](const std::string&) { return square_in_sky(m, 80.0); },
+                  .rounding = 4e-3}};
 }
 
 // Glass -----------------------------------------------------------------------------------------
