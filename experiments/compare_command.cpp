@@ -243,12 +243,12 @@ void add_compare_command(CLI::App& program, RunCommand& run) {
       "scenes. What was stopped goes on with --resume; Ctrl-C finishes the current render and\n"
       "writes a report of what there is.");
   command->footer(
-      "DIR receives errors.csv (a row for each render, as it is measured), journal.jsonl (all "
-      "that\n"
-      "--resume needs), spectra.csv (the errors' power by frequency), summary.json, report.html "
-      "and\n"
-      "the first seed's images. Errors are interpolated between sample counts, never beyond them.\n"
-      "Verdicts against random need it among the samplers, and at least 4 seeds.\n"
+      "DIR receives errors.csv (a row for each render, as it is measured), journal.jsonl (what\n"
+      "--resume needs), spectra.csv (the errors' power by frequency), summary.json, report.html,\n"
+      "figures/ (for papers) and the first seed's images. Errors are interpolated between sample\n"
+      "counts, never beyond them. Verdicts against random need it among the samplers, and at "
+      "least\n"
+      "4 seeds.\n"
       "\n"
       "Examples:\n"
       "  lockstep compare cornell --samplers random,cpt,rcs,owen -o out/cornell\n"

@@ -178,7 +178,7 @@ has out/report.html 'cornell-reference.png'
 # A comparison that is killed at any moment goes on with --resume, to the same errors and images.
 again="compare cornell --samplers random,cpt --spp 1,2,4 --seeds 3 --reference-spp 64 --resolution 24x24
   --threads 1 --timing-repeats 0 --quiet"
-untimed() { cut -d, -f1-4,7-19,22 "$1/errors.csv"; }
+untimed() { cut -d, -f1-4,7-20,23 "$1/errors.csv"; }
 expect 0 '' $again -o whole
 for delay in 0.05 0.15 0.3 0.6; do
   "$program" $again -o killed --resume >/dev/null 2>&1 &
