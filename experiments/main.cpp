@@ -1,8 +1,8 @@
 // The program: chooses a subcommand, and turns errors into one line and an exit status.
 #include "core/error.h"
-#include "experiments/commands.h"
-#include "experiments/machine.h"
-#include "experiments/progress.h"
+#include "experiments/commands/commands.h"
+#include "experiments/output/machine.h"
+#include "experiments/output/progress.h"
 #include "packets/render.h"
 
 #include <fmt/format.h>

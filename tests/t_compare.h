@@ -1,8 +1,8 @@
 // Comparisons made up by hand, and small ones to run.
 #pragma once
 
-#include "experiments/compare.h"
-#include "experiments/metrics.h"
+#include "experiments/compare/compare.h"
+#include "experiments/metrics/metrics.h"
 
 #include <unistd.h>
 

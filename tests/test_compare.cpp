@@ -1,11 +1,11 @@
 // What a comparison writes, from measurements made up by hand; then one small comparison in full.
 #include "core/error.h"
-#include "experiments/compare.h"
-#include "experiments/demo_plan.h"
-#include "experiments/errors_csv.h"
-#include "experiments/metrics.h"
-#include "experiments/output_file.h"
-#include "experiments/summary.h"
+#include "experiments/commands/demo_plan.h"
+#include "experiments/compare/compare.h"
+#include "experiments/compare/errors_csv.h"
+#include "experiments/compare/summary.h"
+#include "experiments/metrics/metrics.h"
+#include "experiments/output/output_file.h"
 #include "tests/t_compare.h"
 
 #include <gtest/gtest.h>

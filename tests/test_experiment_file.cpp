@@ -1,5 +1,5 @@
 // Experiments as TOML files: what is read, and where mistakes are named.
-#include "experiments/experiment_file.h"
+#include "experiments/compare/experiment_file.h"
 #include "tests/t_files.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // FLIP against values worked out by hand, and against those of the authors' program.
-#include "experiments/flip.h"
+#include "experiments/metrics/flip.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

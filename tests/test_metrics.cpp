@@ -1,7 +1,7 @@
 // Metrics against values worked out by hand.
 #include "core/error.h"
-#include "experiments/metrics.h"
-#include "experiments/squared_error.h"
+#include "experiments/metrics/metrics.h"
+#include "experiments/metrics/squared_error.h"
 
 #include <gtest/gtest.h>
 

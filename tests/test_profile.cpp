@@ -1,6 +1,6 @@
 // Profiles: what is measured of packets, and that page and tables show it.
-#include "experiments/metrics.h"
-#include "experiments/profile_page.h"
+#include "experiments/metrics/metrics.h"
+#include "experiments/profile/profile_page.h"
 #include "tests/t_scenes.h"
 
 #include <gtest/gtest.h>

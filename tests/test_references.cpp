@@ -2,7 +2,7 @@
 // Means are compared, and blocks of pixels, so that light has to be in its place too: the largest
 // error of 8 x 6 blocks, and the root of the mean square over blocks of 16 x 16 pixels less what
 // noise makes of it.
-#include "experiments/block_error.h"
+#include "experiments/metrics/block_error.h"
 #include "tests/t_scenes.h"
 
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
 // The report page and the figures, from a comparison made up by hand; the page in a browser is
 // tested in tests/report.
 #include "core/half.h"
-#include "experiments/command_line.h"
-#include "experiments/figures.h"
-#include "experiments/metrics.h"
-#include "experiments/report.h"
-#include "experiments/summary.h"
+#include "experiments/compare/summary.h"
+#include "experiments/metrics/metrics.h"
+#include "experiments/output/command_line.h"
+#include "experiments/report/figures.h"
+#include "experiments/report/report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Comparisons that are stopped and continued, and the files that this rests on.
 #include "core/error.h"
-#include "experiments/errors_csv.h"
-#include "experiments/journal.h"
-#include "experiments/output_file.h"
-#include "experiments/run_list.h"
-#include "experiments/summary.h"
+#include "experiments/compare/errors_csv.h"
+#include "experiments/compare/journal.h"
+#include "experiments/compare/run_list.h"
+#include "experiments/compare/summary.h"
+#include "experiments/output/output_file.h"
 #include "tests/t_compare.h"
 #include "tests/t_files.h"
 

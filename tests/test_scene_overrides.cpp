@@ -1,5 +1,5 @@
 // Camera and environment from the command line, in place of the scene's.
-#include "experiments/scene_overrides.h"
+#include "experiments/scenes/scene_overrides.h"
 
 #include "core/read_scene.h"
 #include "tests/t_files.h"

@@ -1,5 +1,5 @@
 // What `lockstep info` says of small scenes in every format.
-#include "experiments/scene_report.h"
+#include "experiments/scenes/scene_report.h"
 
 #include "tests/t_files.h"
 #include "tests/t_png.h"

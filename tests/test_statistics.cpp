@@ -1,5 +1,5 @@
 // Summary statistics and equal-time interpolation against values worked out by hand.
-#include "experiments/statistics.h"
+#include "experiments/compare/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "core/builtin/parts.h"
 #include "core/error.h"
 #include "core/scene_warnings.h"
-#include "experiments/stress.h"
+#include "experiments/stress/stress.h"
 
 #include <gtest/gtest.h>
 

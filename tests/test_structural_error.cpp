@@ -1,13 +1,13 @@
 // Low-pass RMSE, SSIM and the spectrum of errors on images with known answers.
-#include "experiments/structural_error.h"
+#include "experiments/metrics/structural_error.h"
 
 #include "core/srgb.h"
-#include "experiments/block_error.h"
-#include "experiments/display_image.h"
-#include "experiments/error_spectrum.h"
-#include "experiments/fast_power.h"
-#include "experiments/separable_filter.h"
-#include "experiments/squared_error.h"
+#include "experiments/metrics/block_error.h"
+#include "experiments/metrics/error_spectrum.h"
+#include "experiments/metrics/separable_filter.h"
+#include "experiments/metrics/squared_error.h"
+#include "experiments/output/display_image.h"
+#include "experiments/output/fast_power.h"
 
 #include <gtest/gtest.h>
 

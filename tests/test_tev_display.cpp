@@ -1,6 +1,6 @@
 // The live view against a small receiver that reads the protocol of the viewer tev.
 #include "core/error.h"
-#include "experiments/tev_display.h"
+#include "experiments/output/tev_display.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

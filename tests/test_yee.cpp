@@ -1,5 +1,5 @@
 // Yee's perceptual difference: limits known by hand, and the counts of perceptualdiff.
-#include "experiments/yee.h"
+#include "experiments/metrics/yee.h"
 
 #include <gtest/gtest.h>
 

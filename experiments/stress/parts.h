@@ -5,7 +5,7 @@
 #include "core/builtin/parts.h"
 #include "core/image.h"
 #include "core/scene_description.h"
-#include "experiments/stress.h"
+#include "experiments/stress/stress.h"
 
 #include <functional>
 #include <string>
