@@ -31,14 +31,10 @@ SamplerState make_state(const SamplerSpec& spec, std::uint32_t seed, const Sampl
   state.samples = std::max(plan.samples, 1u);
   state.width = plan.width;
   state.pixel_bits = std::bit_width(unsigned(std::max(plan.width, plan.height) - 1));
-  if (const auto table = Sequences::infos()[std::size_t(spec.sequence)].table) {
-    state.table = table();
-  }
+  state.table = Sequences::infos()[std::size_t(spec.sequence)].table;
   if (spec.perturbation == PerturbationId{}) return state;
   state.weight = spec.weight_source == WeightSource::Cells ? cell_side(state.samples) : spec.weight;
-  if (const auto mask = Perturbations::infos()[std::size_t(spec.perturbation)].mask) {
-    state.mask = mask();
-  }
+  state.mask = Perturbations::infos()[std::size_t(spec.perturbation)].mask;
   return state;
 }
 

@@ -10,13 +10,13 @@ namespace lockstep {
 
 struct SequenceInfo {
   std::string_view name, summary, paper;
-  bool planned = false;                       // its points depend on SamplerState::samples
-  const std::uint32_t* (*table)() = nullptr;  // made when first asked for, and kept
+  bool planned = false;  // its points depend on SamplerState::samples
+  const std::uint32_t* table = nullptr;
 };
 
 struct PerturbationInfo {
   std::string_view name, summary, paper;
-  const std::uint32_t* (*mask)() = nullptr;  // likewise
+  const std::uint32_t* mask = nullptr;
 };
 
 }  // namespace lockstep

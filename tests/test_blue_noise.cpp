@@ -67,12 +67,12 @@ constexpr double nyquist = side / 2;
 
 Field ranks() {
   Field field;
-  for (int i = 0; i < cells; ++i) field.push_back(double(blue_noise_mask()[i]));
+  for (int i = 0; i < cells; ++i) field.push_back(double(blue_noise_mask[i]));
   return field;
 }
 
 TEST(BlueNoiseMask, HasEveryRankOnce) {
-  const std::set<std::uint32_t> all(blue_noise_mask(), blue_noise_mask() + cells);
+  const std::set<std::uint32_t> all(blue_noise_mask, blue_noise_mask + cells);
   EXPECT_EQ(int(all.size()), cells);
   EXPECT_EQ(*all.rbegin(), std::uint32_t(cells - 1));
 }
@@ -123,11 +123,11 @@ TEST(BlueNoiseOffset, IsTheMaskMovedForEachPairAndAxis) {
       all.insert(rank);
       EXPECT_LT(relative_power(here, 0.0, nyquist / 4), 0.1);
       // Moved as a whole: beside each other on the torus lie the ranks that do in the mask.
-      const auto first = std::find(blue_noise_mask(), blue_noise_mask() + cells, rank[0]);
-      const int move = int(first - blue_noise_mask());
+      const auto first = std::find(blue_noise_mask, blue_noise_mask + cells, rank[0]);
+      const int move = int(first - blue_noise_mask);
       for (int i = 0; i < cells; ++i) {
         const int x = (i % side + move % side) % side, y = (i / side + move / side) % side;
-        ASSERT_EQ(rank[std::size_t(i)], blue_noise_mask()[y * side + x]);
+        ASSERT_EQ(rank[std::size_t(i)], blue_noise_mask[y * side + x]);
       }
     }
   }
@@ -138,7 +138,7 @@ TEST(BlueNoiseOffset, IsTheMaskMovedForEachPairAndAxis) {
 // some paths more likely than others.
 TEST(BlueNoiseOffset, MovesOfPairsAndAxesAreIndependentOverSeeds) {
   std::vector<int> cell_of(cells);
-  for (int i = 0; i < cells; ++i) cell_of[blue_noise_mask()[i]] = i;
+  for (int i = 0; i < cells; ++i) cell_of[blue_noise_mask[i]] = i;
   SamplerState state = state_of("bluenoise");
   const auto move = [&](std::uint32_t seed, int pair) {
     state.seed = pcg3d(seed, 0u, 0x1ec5u).x;  // as renders have them

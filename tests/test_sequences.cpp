@@ -76,7 +76,7 @@ TEST(Sobol, MatricesBeginWithThePublishedDirectionNumbers) {
       {1, 3, 5, 13}, {1, 1, 5, 5, 17}, {1, 1, 5, 5, 5}, {1, 1, 7, 11, 19}};
   for (std::size_t d = 0; d < published.size(); ++d) {
     for (std::size_t j = 0; j < published[d].size(); ++j) {
-      const std::uint32_t column = joe_kuo_matrices()[(d + 1) * 32 + j];
+      const std::uint32_t column = joe_kuo_matrices[(d + 1) * 32 + j];
       EXPECT_EQ(reverse_bits(column), published[d][j] << (31 - j)) << d + 2 << ' ' << j;
     }
   }
@@ -85,7 +85,7 @@ TEST(Sobol, MatricesBeginWithThePublishedDirectionNumbers) {
 TEST(Sobol, MatricesAreRegularAndUnlikeEachOther) {
   std::set<std::vector<std::uint32_t>> all;
   for (int d = 0; d < joe_kuo_dimensions; ++d) {
-    const std::uint32_t* columns = joe_kuo_matrices() + d * 32;
+    const std::uint32_t* columns = joe_kuo_matrices + d * 32;
     for (int j = 0; j < 32; ++j) ASSERT_EQ(columns[j] >> j, 1u) << d;  // a triangle of ones
     all.emplace(columns, columns + 32);
   }
@@ -252,8 +252,8 @@ TEST(Stratified, PixelsPairsAndPlansHaveOrdersOfTheirOwn) {
 
 TEST(Halton, BasesAreTheFirstPrimes) {
   const std::uint32_t first[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(halton_primes()[i], first[i]);
-  EXPECT_EQ(halton_primes()[999], 7919u);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(halton_primes[i], first[i]);
+  EXPECT_EQ(halton_primes[999], 7919u);
 }
 
 // Before the shift: 2^a 3^b points have one in every box that is 2^-a wide and 3^-b high, and
@@ -271,7 +271,7 @@ TEST(Halton, PointsAreStratifiedInTheirBases) {
       EXPECT_EQ(int(boxes.size()), columns * rows);
     }
     for (int pair = 0; pair < 512; pair += 1 + pair / 4) {
-      const std::uint32_t base = halton_primes()[2 * pair];
+      const std::uint32_t base = halton_primes[2 * pair];
       for (std::uint32_t n = base; n < 9000; n *= base) {
         std::vector<float> x;
         for (std::uint32_t i = 2 * n; i < 3 * n; ++i) {

@@ -1,4 +1,5 @@
 #include "samplers/pmj02_table.h"
+#include "samplers/tables/tables.h"
 
 #include <algorithm>
 #include <bit>
@@ -87,15 +88,12 @@ class Builder {
 
 }  // namespace
 
-const std::uint32_t* pmj02_table() {
-  static const std::vector<std::uint32_t> all = [] {
-    std::vector<std::uint32_t> points(2 * pmj02_tables * pmj02_points);
-    for (std::uint32_t t = 0; t < pmj02_tables; ++t) {
-      Builder(t + 1, points.data() + 2 * t * pmj02_points);
-    }
-    return points;
-  }();
-  return all.data();
+std::vector<std::uint32_t> make_pmj02_table() {
+  std::vector<std::uint32_t> points(2 * pmj02_tables * pmj02_points);
+  for (std::uint32_t t = 0; t < pmj02_tables; ++t) {
+    Builder(t + 1, points.data() + 2 * t * pmj02_points);
+  }
+  return points;
 }
 
 }  // namespace lockstep

@@ -1,4 +1,5 @@
 #include "samplers/joe_kuo.h"
+#include "samplers/tables/tables.h"
 
 #include <boost/random/sobol.hpp>
 
@@ -33,16 +34,13 @@ void make_dimension(std::uint32_t polynomial, std::size_t number, std::uint32_t*
 
 }  // namespace
 
-const std::uint32_t* joe_kuo_matrices() {
-  static const std::vector<std::uint32_t> matrices = [] {
-    std::vector<std::uint32_t> all(joe_kuo_dimensions * 32);
-    for (int j = 0; j < 32; ++j) all[std::size_t(j)] = 1u << j;  // van der Corput
-    for (std::size_t d = 1; d < joe_kuo_dimensions; ++d) {
-      make_dimension(Table::polynomial(d - 1), d - 1, all.data() + d * 32);
-    }
-    return all;
-  }();
-  return matrices.data();
+std::vector<std::uint32_t> make_joe_kuo_matrices() {
+  std::vector<std::uint32_t> all(joe_kuo_dimensions * 32);
+  for (int j = 0; j < 32; ++j) all[std::size_t(j)] = 1u << j;  // van der Corput
+  for (std::size_t d = 1; d < joe_kuo_dimensions; ++d) {
+    make_dimension(Table::polynomial(d - 1), d - 1, all.data() + d * 32);
+  }
+  return all;
 }
 
 }  // namespace lockstep

@@ -1,5 +1,7 @@
 #include "samplers/blue_noise_mask.h"
+#include "samplers/tables/tables.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -76,7 +78,9 @@ Pattern first_pattern() {
   }
 }
 
-std::vector<std::uint32_t> make_mask() {
+}  // namespace
+
+std::vector<std::uint32_t> make_blue_noise_mask() {
   std::vector<std::uint32_t> ranks(cells);
   const Pattern first = first_pattern();
   Pattern p = first;
@@ -93,13 +97,6 @@ std::vector<std::uint32_t> make_mask() {
     ranks[std::size_t(cell)] = std::uint32_t(rank);
   }
   return ranks;
-}
-
-}  // namespace
-
-const std::uint32_t* blue_noise_mask() {
-  static const std::vector<std::uint32_t> mask = make_mask();
-  return mask.data();
 }
 
 }  // namespace lockstep
