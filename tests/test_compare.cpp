@@ -130,6 +130,24 @@ TEST(Summary, HasSpectra) {
   EXPECT_FALSE(rungs[0].contains("spectrum")) << "none was measured at 4 spp";
 }
 
+// All pairs but one say 0.9; the errors come in two clusters, and that pair carries the median into
+// the other one.
+TEST(Summary, MediansThatContradictTheirRatioAreMarked) {
+  const auto low = [](std::uint32_t seed) { return seed < 5 ? 1.0 : 4.0; };
+  const auto summary = summarize(made_comparison(
+      {{"random", 1.0, [&](int, std::uint32_t seed) { return low(seed); }},
+       {"owen", 1.0, [&](int, std::uint32_t seed) { return seed == 0 ? 3.6 : 0.9 * low(seed); }},
+       {"strata", 1.0, [&](int, std::uint32_t seed) { return 0.9 * low(seed); }}},
+      9));
+  const auto& row = summary["scenes"][0]["equal_time"]["budgets"][0]["samplers"];
+  EXPECT_NEAR(row[1]["rmse"]["ratio"]["of_medians"], 3.6, 1e-9);
+  EXPECT_LT(row[1]["rmse"]["ratio"]["value"], 1.2);
+  EXPECT_TRUE(row[1]["rmse"]["ratio"]["medians_disagree"]);
+  EXPECT_NEAR(row[2]["rmse"]["ratio"]["of_medians"], 0.9, 1e-9);
+  EXPECT_FALSE(row[2]["rmse"]["ratio"]["medians_disagree"]);
+  EXPECT_NE(results_table(summary).find("\n  ! the medians' ratio"), std::string::npos);
+}
+
 TEST(Summary, AnErrorOfZeroHasNoRatio) {
   Comparison comparison = made_comparison();
   const std::size_t yee = 3;

@@ -24,7 +24,11 @@ std::string value_text(double value) {
                                         : fmt::format("{:.3g}", value);
 }
 
-// "x0.87", with a star where the interval excludes 1.
+bool medians_disagree(const Json& ratio) {
+  return !ratio.is_null() && ratio.value("medians_disagree", false);
+}
+
+// "x0.87", with a star where the interval excludes 1, and a mark where the medians disagree.
 std::string ratio_text(const Json& ratio) {
   if (ratio.is_null()) return "-";
   const double value = ratio["value"].get<double>();
@@ -33,7 +37,7 @@ std::string ratio_text(const Json& ratio) {
   if (!ratio.contains("interval_95")) return text;
   const Json& interval = ratio["interval_95"];
   if (interval[0].get<double>() > 1.0 || interval[1].get<double>() < 1.0) text += '*';
-  return text;
+  return medians_disagree(ratio) ? text + '!' : text;
 }
 
 std::string header_line(const Json& summary, std::size_t width, bool with_ratio) {
@@ -62,10 +66,11 @@ std::string equal_time_table(const Json& summary, const Json& scene, const Json&
         budget["cpu_seconds"].get<double>());
   }
   std::string text = fmt::format(
-      "\n  at {:.3g} s of CPU time: medians and ratios to {}; * 95 % interval excludes 1\n",
+      "\n  at {:.3g} s of CPU time: medians, and mean ratios to {} over seeds; * 95 % interval "
+      "excludes 1\n",
       budget["cpu_seconds"].get<double>(), scene["samplers"][0]["sampler"].get<std::string>());
   text += header_line(summary, width, true) + '\n';
-  bool is_complete = true;
+  bool is_complete = true, do_agree = true;
   for (const Json& row : budget["samplers"]) {
     text += fmt::format("  {:{}}", row["sampler"].get<std::string>(), width);
     const bool is_base = &row == &budget["samplers"].front();
@@ -78,12 +83,17 @@ std::string equal_time_table(const Json& summary, const Json& scene, const Json&
       }
       text += fmt::format(" {:<8} {:<6}", value_text(cell["median"].get<double>()),
                           is_base ? "" : ratio_text(cell["ratio"]));
+      do_agree = do_agree && !medians_disagree(cell["ratio"]);
     }
     text += '\n';
   }
   if (!is_complete) {
     text +=
         "  - not measured at this time, and nothing is extrapolated: give more or wider --spp\n";
+  }
+  if (!do_agree) {
+    text +=
+        "  ! the medians' ratio lies far off: few pixels or seeds decide (see relmse_trimmed)\n";
   }
   return text;
 }

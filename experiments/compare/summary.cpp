@@ -119,6 +119,17 @@ Json ratio_json(const std::optional<Ratio>& ratio) {
   return json;
 }
 
+// Adds the ratio of the two medians, and whether it lies outside the interval by more than a tenth:
+// then a few pixels or seeds decide what one of the two says.
+void add_ratio_of_medians(Json& ratio, double own, double base) {
+  if (ratio.is_null() || !(base > 0.0)) return;
+  constexpr double margin = 1.1;
+  ratio["of_medians"] = own / base;
+  if (!ratio.contains("interval_95")) return;
+  const double low = ratio["interval_95"][0], high = ratio["interval_95"][1];
+  ratio["medians_disagree"] = own / base < low / margin || own / base > high * margin;
+}
+
 // Null where a sampler was not measured at `time`.
 Json budget_json(const std::vector<SamplerSpec>& samplers, const std::vector<Rungs>& rungs,
                  double time) {
@@ -130,6 +141,8 @@ Json budget_json(const std::vector<SamplerSpec>& samplers, const std::vector<Run
       const std::optional<double> error = error_at(median_curve(rungs[s], m), time);
       if (!error) continue;
       cell = {{"median", *error}, {"ratio", ratio_json(ratio_at(rungs[s], rungs[0], m, time))}};
+      const std::optional<double> base = error_at(median_curve(rungs[0], m), time);
+      if (base) add_ratio_of_medians(cell["ratio"], *error, *base);
     }
     json["samplers"].push_back(entry);
   }

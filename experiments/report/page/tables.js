@@ -12,6 +12,10 @@ function errorCell(row, value, isBase, isBest) {
   const interval = value.ratio.interval_95;
   td.append("small").text(isBase ? "× 1" : `× ${ratio(value.ratio.value)}` +
     (interval ? ` [${ratio(interval[0])}, ${ratio(interval[1])}]` : ""));
+  if (value.ratio.medians_disagree) {
+    td.append("abbr").text("†").attr("title", `The medians' ratio is ${ratio(value.ratio.of_medians)}: few pixels or ` +
+      "seeds decide. relMSE, trimmed, leaves the worst pixels out.");
+  }
 }
 
 function samplerCell(row, i, name) {
@@ -69,7 +73,8 @@ function equalTime(section, scene) {
   }
   section.append("p").attr("class", "muted").text(
     `Median error, read between the measured points (straight in both logarithms, never beyond them), and ratio to ` +
-    `${scene.samplers[0].sampler}: geometric mean over seeds, with its 95 % interval over seeds. Best medians are bold.`);
+    `${scene.samplers[0].sampler}: geometric mean over seeds, with its 95 % interval over seeds; † where the medians' ` +
+    `own ratio lies far outside it. Best medians are bold.`);
   const table = section.append("div").attr("class", "table").append("table");
   drawNowAndLater(() => {
     const columns = tableColumns();
