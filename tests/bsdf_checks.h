@@ -30,11 +30,21 @@ struct BsdfUnderTest {
 inline ScatterSample<float> with_marks(const BsdfSample<float>& s) { return {s, false, 1.0f}; }
 inline ScatterSample<float> with_marks(const ScatterSample<float>& s) { return s; }
 
+// What is inlined by force, once for all tests of a model.
+template <class Bsdf, class V>
+[[gnu::noinline]] auto eval_once(const Bsdf& bsdf, const Vec3<V>& wo, const Vec3<V>& wi) {
+  return eval(bsdf, wo, wi);
+}
+template <class Bsdf, class V>
+[[gnu::noinline]] auto sample_once(const Bsdf& bsdf, const Vec3<V>& wo, V lobe, Vec2<V> u) {
+  return sample(bsdf, wo, lobe, u);
+}
+
 template <class Bsdf>
 BsdfUnderTest under_test(std::string name, const Bsdf& bsdf) {
-  return {std::move(name), [bsdf](glm::vec3 wo, glm::vec3 wi) { return eval(bsdf, wo, wi); },
+  return {std::move(name), [bsdf](glm::vec3 wo, glm::vec3 wi) { return eval_once(bsdf, wo, wi); },
           [bsdf](glm::vec3 wo, glm::vec3 u) {
-            return with_marks(sample(bsdf, wo, u.z, Vec2<float>(u.x, u.y)));
+            return with_marks(sample_once(bsdf, wo, u.z, Vec2<float>(u.x, u.y)));
           }};
 }
 
@@ -179,13 +189,13 @@ void expect_same_bits(const std::vector<MaterialRow>& materials, bool from_below
     const Vec3<V> wo(load<V>(o[0]), load<V>(o[1]), load<V>(o[2]));
     const Vec3<V> wi(load<V>(in[0]), load<V>(in[1]), load<V>(in[2]));
     const auto bsdf = load_bsdf(table, load<Int<W>>(index));
-    const BsdfValue<V> value = eval(bsdf, wo, wi);
-    const auto s = sample(bsdf, wo, load<V>(u[2]), Vec2<V>(load<V>(u[0]), load<V>(u[1])));
+    const BsdfValue<V> value = eval_once(bsdf, wo, wi);
+    const auto s = sample_once(bsdf, wo, load<V>(u[2]), Vec2<V>(load<V>(u[0]), load<V>(u[1])));
     for (int k = 0; k < W; ++k) {
       const auto one_bsdf = load_bsdf(table, index[k]);
       const glm::vec3 a = lane(wo, k);
-      const BsdfValue<float> one = eval(one_bsdf, a, lane(wi, k));
-      const auto t = sample(one_bsdf, a, u[2][k], Vec2<float>(u[0][k], u[1][k]));
+      const BsdfValue<float> one = eval_once(one_bsdf, a, lane(wi, k));
+      const auto t = sample_once(one_bsdf, a, u[2][k], Vec2<float>(u[0][k], u[1][k]));
       ASSERT_TRUE(same_value(lane(value.f_cos, k), one.f_cos)) << index[k] << " W=" << W;
       ASSERT_TRUE(same_value(value.pdf[k], one.pdf)) << index[k] << " W=" << W;
       ASSERT_TRUE(same_value(lane(s.wi, k), t.wi)) << index[k] << " W=" << W;

@@ -22,4 +22,18 @@ inline SceneDescription square(const Material& material, int side = 8) {
 // Samples lie in the middle of pixels.
 inline void sample_centres(SceneDescription& d) { d.film.filter.radius = glm::vec2(1e-4f); }
 
+// Every pixel of one render, in which there is no noise.
+inline void expect_pixels(const Scene& scene, const PixelFunction& expected,
+                          float tolerance = 1e-4f) {
+  const Image image = rendered(scene, {.spp = 4, .depth = 1});
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const glm::vec3 e = expected(x, y);
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_NEAR(image.at(x, y)[c], e[c], tolerance) << x << ' ' << y << ' ' << c;
+      }
+    }
+  }
+}
+
 }  // namespace lockstep

@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_blue_noise {
 namespace {
 
 constexpr int side = blue_noise_side;
@@ -174,4 +174,4 @@ TEST(BlueNoiseOffset, TilesWithPlacesOfItsOwnBelowTheRank) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_blue_noise

@@ -2,8 +2,7 @@
 // and the normalisation of the microfacet distribution.
 #include "core/bsdf.h"
 
-#include "tests/chi_square.h"
-#include "tests/widths.h"
+#include "tests/bsdf_checks.h"
 
 #include <gtest/gtest.h>
 #include <glm/common.hpp>
@@ -15,7 +14,7 @@
 #include <cmath>
 #include <string>
 
-namespace lockstep {
+namespace lockstep::test_bsdf {
 namespace {
 
 constexpr std::uint32_t sample_count = 1 << 17;
@@ -82,12 +81,6 @@ const std::vector<MaterialCase>& cases() {
 
 constexpr float view_angles[] = {0.0f, 30.0f, 60.0f, 85.0f};
 
-glm::vec3 view_direction(float degrees) {
-  const float a = degrees * pi / 180.0f;
-  constexpr float azimuth = 0.6f;
-  return {std::sin(a) * std::cos(azimuth), std::sin(a) * std::sin(azimuth), std::cos(a)};
-}
-
 // f(bsdf) for the model of that kind, loaded for `index`.
 template <class I, class F>
 auto with_bsdf(MaterialKind kind, const MaterialTable& table, I index, F f) {
@@ -98,13 +91,13 @@ auto with_bsdf(MaterialKind kind, const MaterialTable& table, I index, F f) {
 
 BsdfValue<float> eval_case(const MaterialCase& c, glm::vec3 wo, glm::vec3 wi) {
   const MaterialTable table{c.row.data()};
-  return with_bsdf(c.kind, table, 0, [&](const auto& bsdf) { return eval(bsdf, wo, wi); });
+  return with_bsdf(c.kind, table, 0, [&](const auto& bsdf) { return eval_once(bsdf, wo, wi); });
 }
 
 BsdfSample<float> sample_case(const MaterialCase& c, glm::vec3 wo, glm::vec3 u) {
   const MaterialTable table{c.row.data()};
   return with_bsdf(c.kind, table, 0, [&](const auto& bsdf) {
-    return sample(bsdf, wo, u.z, {u.x, u.y});
+    return sample_once(bsdf, wo, u.z, Vec2<float>(u.x, u.y));
   });
 }
 
@@ -316,9 +309,9 @@ void expect_same_bits_at_width(MaterialKind kind) {
     wi = {load<V>(in[0]), load<V>(in[1]), load<V>(in[2])};
     const Int<W> at = load<Int<W>>(index);
     const auto value =
-        with_bsdf(kind, table, at, [&](const auto& bsdf) { return eval(bsdf, wo, wi); });
+        with_bsdf(kind, table, at, [&](const auto& bsdf) { return eval_once(bsdf, wo, wi); });
     const auto sampled = with_bsdf(kind, table, at, [&](const auto& bsdf) {
-      return sample(bsdf, wo, load<V>(lobe), Vec2<V>(load<V>(u), load<V>(v)));
+      return sample_once(bsdf, wo, load<V>(lobe), Vec2<V>(load<V>(u), load<V>(v)));
     });
     for (int k = 0; k < W; ++k) {
       const glm::vec3 a = lane(wo, k), b = lane(wi, k);
@@ -357,4 +350,4 @@ TEST(Bsdf, SamplesAreFiniteAtTheEdgesOfTheSquare) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_bsdf

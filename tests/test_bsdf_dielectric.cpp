@@ -4,7 +4,7 @@
 #include "core/fresnel.h"
 #include "tests/bsdf_checks.h"
 
-namespace lockstep {
+namespace lockstep::test_bsdf_dielectric {
 namespace {
 
 DielectricBsdf<float> glass(float eta, float alpha, bool thin = false) {
@@ -239,4 +239,4 @@ TEST(Dielectric, HasTheSameBitsAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_bsdf_dielectric

@@ -15,7 +15,7 @@
 #include <limits>
 #include <utility>
 
-namespace lockstep {
+namespace lockstep::test_builtin_scenes {
 namespace {
 
 size_t triangle_count(const SceneDescription& scene) {
@@ -253,4 +253,4 @@ TEST(ReadScene, PbrtIsKnownByContent) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_builtin_scenes

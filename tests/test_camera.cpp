@@ -18,7 +18,7 @@
 #include <map>
 #include <utility>
 
-namespace lockstep {
+namespace lockstep::test_camera {
 namespace {
 
 constexpr std::uint32_t sample_count = 1 << 17;
@@ -394,4 +394,4 @@ TEST(Camera, ShiftMovesTheCentreOfTheImage) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_camera

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace lockstep {
+namespace lockstep::test_chi_square {
 namespace {
 
 TEST(ChiSquare, PValuesMatchTables) {
@@ -65,4 +65,4 @@ TEST(ChiSquare, AcceptsTheRightDensityAndRejectsNearlyRightOnes) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_chi_square

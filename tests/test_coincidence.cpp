@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_coincidence {
 namespace {
 
 using Flags = std::vector<std::uint8_t>;
@@ -363,4 +363,4 @@ TEST(Coincidence, NonFiniteTrianglesOverlapNothing) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_coincidence

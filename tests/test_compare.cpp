@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace lockstep {
+namespace lockstep::test_compare {
 namespace {
 
 std::string verdict_on(const std::vector<MadeSampler>& samplers, int seeds) {
@@ -455,4 +455,4 @@ TEST(Compare, AReferenceOfAnotherSizeIsRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_compare

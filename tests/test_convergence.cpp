@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lockstep {
+namespace lockstep::test_convergence {
 namespace {
 
 constexpr int all_pixels = 256, some_pixels = 4;
@@ -155,4 +155,4 @@ TEST(Convergence, OfAProductOfTwoPairs) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_convergence

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lockstep {
+namespace lockstep::test_delta_lights {
 namespace {
 
 constexpr float albedo = 0.6f;
@@ -142,4 +142,4 @@ TEST(DeltaLights, LeaveImagesTheSameAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_delta_lights

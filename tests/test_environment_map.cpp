@@ -16,7 +16,7 @@
 #include <functional>
 #include <limits>
 
-namespace lockstep {
+namespace lockstep::test_environment_map {
 namespace {
 
 constexpr double pi_d = 3.14159265358979323846;
@@ -57,6 +57,23 @@ glm::vec3 random_direction(std::uint32_t i, std::uint32_t seed) {
 }
 
 double luminance_of(glm::vec3 c) { return double(luminance(c)); }
+
+// What is inlined by force, once for all tests.
+[[gnu::noinline]] glm::vec3 radiance_of(const EnvironmentMapData& map, glm::vec3 w) {
+  return environment_map_radiance(map, w);
+}
+[[gnu::noinline]] float pdf_of(const EnvironmentMapData& map, glm::vec3 w) {
+  return environment_map_pdf(map, w);
+}
+template <int W>
+[[gnu::noinline]] MapSample<Float<W>> sample_of(const EnvironmentMapData& map, Vec2<Float<W>> u) {
+  return sample_environment_map<Float<W>>(map, u);
+}
+template <int W>
+[[gnu::noinline]] MapLight<Float<W>> light_of(const EnvironmentMapData& map,
+                                              const Vec3<Float<W>>& w) {
+  return evaluate_environment_map<Float<W>>(map, w);
+}
 
 class EnvironmentMaps : public TestWithFiles {
  protected:
@@ -170,7 +187,7 @@ TEST_F(EnvironmentMaps, PixelCentresAreSeenInTheirDirections) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         const glm::dvec3 w = direction_of(mapping, {(x + 0.5) / width, (y + 0.5) / height});
-        const glm::vec3 found = environment_map_radiance(map.view(), glm::vec3(w));
+        const glm::vec3 found = radiance_of(map.view(), glm::vec3(w));
         const glm::vec3 expected = noise(x, y) * e.radiance;
         EXPECT_LT(glm::length(found - expected), 2e-5f) << x << ", " << y;
       }
@@ -188,8 +205,8 @@ TEST_F(EnvironmentMaps, RadianceIsContinuousAcrossSeamsAndPoles) {
       const glm::dvec2 edge[] = {{0.0, along}, {along, 0.0}, {along, 1.0}};
       const glm::dvec3 w = direction_of(mapping, edge[i % 3]);
       const glm::dvec3 step = 1e-5 * glm::dvec3(random_direction(i, 5));
-      const glm::vec3 a = environment_map_radiance(map.view(), glm::vec3(glm::normalize(w - step)));
-      const glm::vec3 b = environment_map_radiance(map.view(), glm::vec3(glm::normalize(w + step)));
+      const glm::vec3 a = radiance_of(map.view(), glm::vec3(glm::normalize(w - step)));
+      const glm::vec3 b = radiance_of(map.view(), glm::vec3(glm::normalize(w + step)));
       // At the poles of a map by latitude radiance depends on the longitude, which jumps.
       if (mapping == SphereMapping::LatLong && std::abs(w.y) > 0.999) continue;
       ASSERT_LT(glm::length(a - b), 4e-3f) << i;
@@ -204,8 +221,8 @@ TEST_F(EnvironmentMaps, RadianceIsContinuousThroughThePoles) {
     for (std::uint32_t i = 0; i < 1000; ++i) {
       const double phi = 2.0 * pi_d * double(uniform2(i, 15).x), size = 1e-4;
       const glm::vec3 w(size * std::sin(phi), i % 2 ? 1.0 : -1.0, size * std::cos(phi));
-      const glm::vec3 a = environment_map_radiance(map.view(), w);
-      const glm::vec3 b = environment_map_radiance(map.view(), glm::vec3(-w.x, w.y, -w.z));
+      const glm::vec3 a = radiance_of(map.view(), w);
+      const glm::vec3 b = radiance_of(map.view(), glm::vec3(-w.x, w.y, -w.z));
       ASSERT_LT(glm::length(a - b), 4e-3f) << i;
     }
   }
@@ -226,12 +243,12 @@ TEST_F(EnvironmentMaps, SamplesHaveTheirDensity) {
       // Whole parts of the grid's cells, so that the density jumps at their edges only.
       CellCounts counts(3 * data.columns, 3 * data.rows);
       for (std::uint32_t i = 0; i < 1u << 17; ++i) {
-        const MapSample<float> s = sample_environment_map<float>(data, uniform2(i, 6));
+        const MapSample<float> s = sample_of<1>(data, uniform2(i, 6));
         counts.add(square_of(mapping, glm::transpose(e.to_world) * s.wi));
       }
       const DensityTest test = counts.test([&](glm::dvec2 p) {
         const glm::vec3 w = e.to_world * glm::vec3(direction_of(mapping, p));
-        return double(environment_map_pdf(data, w)) * solid_angle_per_area(mapping, p);
+        return double(pdf_of(data, w)) * solid_angle_per_area(mapping, p);
       });
       EXPECT_GT(test.chi_square.p_value, sidak_significance(tests))
           << int(mapping) << bright << ": chi-square " << test.chi_square.statistic << " with "
@@ -257,7 +274,7 @@ TEST_F(EnvironmentMaps, DensityIntegratesToOne) {
       for (int column = 0; column < data.columns; ++column) {
         const glm::dvec2 p((column + 0.5) / data.columns, (row + 0.5) / data.rows);
         const glm::vec3 w(direction_of(mapping, p));
-        sum += solid_angle * double(environment_map_pdf(data, w));
+        sum += solid_angle * double(pdf_of(data, w));
       }
     }
     EXPECT_NEAR(sum, 1.0, 1e-6);
@@ -270,9 +287,9 @@ TEST_F(EnvironmentMaps, SamplesAgreeWithLookupsToTheLastBit) {
     const EnvironmentMapData data = map.view();
     int lost = 0;
     for (std::uint32_t i = 0; i < 50000; ++i) {
-      const MapSample<float> s = sample_environment_map<float>(data, uniform2(i, 7));
-      ASSERT_TRUE(same_value(s.pdf, environment_map_pdf(data, s.wi)));
-      ASSERT_TRUE(same_value(s.radiance, environment_map_radiance(data, s.wi)));
+      const MapSample<float> s = sample_of<1>(data, uniform2(i, 7));
+      ASSERT_TRUE(same_value(s.pdf, pdf_of(data, s.wi)));
+      ASSERT_TRUE(same_value(s.radiance, radiance_of(data, s.wi)));
       ASSERT_NEAR(length(s.wi), 1.0f, 1e-6f);
       lost += !(s.pdf > 0.0f);
     }
@@ -307,7 +324,7 @@ TEST_F(EnvironmentMaps, NoRadianceHasDensityZero) {
             centre + (glm::dvec2(uniform2(i, 8)) - 0.5) * 3.0 / glm::dvec2(p.width, p.height);
         const glm::dvec3 w = i % 4 ? direction_of(mapping, glm::clamp(at, 0.0, 1.0))
                                    : glm::dvec3(random_direction(i, 9));
-        const MapLight<float> light = evaluate_environment_map(data, glm::vec3(w));
+        const MapLight<float> light = light_of<1>(data, glm::vec3(w));
         if (light.radiance.x > 0.0f) {
           ++seen;
           ASSERT_GT(light.pdf, 0.0f) << p.width << ": " << p.x << ", " << p.y;
@@ -332,14 +349,14 @@ TEST_F(EnvironmentMaps, EstimatesMatchIntegrals) {
         const double area = solid_angle_per_area(mapping, p);
         const glm::vec3 local(direction_of(mapping, p));
         const glm::vec3 w = e.to_world * local;
-        const double value = luminance_of(environment_map_radiance(data, w));
+        const double value = luminance_of(radiance_of(data, w));
         expected += value * area * (1.0 + double(w.x)) / (double(n) * n);
       }
     }
     double sum = 0.0, squares = 0.0;
     constexpr std::uint32_t samples = 1 << 16;
     for (std::uint32_t i = 0; i < samples; ++i) {
-      const MapSample<float> s = sample_environment_map<float>(data, uniform2(i, 10));
+      const MapSample<float> s = sample_of<1>(data, uniform2(i, 10));
       const double x = luminance_of(s.radiance) / double(s.pdf) * (1.0 + double(s.wi.x));
       sum += x / samples, squares += x * x / samples;
     }
@@ -358,7 +375,7 @@ TEST_F(EnvironmentMaps, ConstantMapIsUniform) {
   for (const SphereMapping mapping : mappings) {
     const EnvironmentMap map(environment(mapping, 8, 8, [](int, int) { return glm::vec3(3.0f); }));
     for (std::uint32_t i = 0; i < 1000; ++i) {
-      const auto light = evaluate_environment_map(map.view(), random_direction(i, 11));
+      const auto light = light_of<1>(map.view(), random_direction(i, 11));
       EXPECT_NEAR(light.pdf, 0.25f * inv_pi, 1e-5f);
       EXPECT_NEAR(light.radiance.y, 3.0f, 1e-5f);
     }
@@ -375,7 +392,7 @@ TEST_F(EnvironmentMaps, BlackMapIsSampledUniformly) {
       const EnvironmentMap map(e);
       glm::dvec3 mean(0.0);
       for (std::uint32_t i = 0; i < 4000; ++i) {
-        const MapSample<float> s = sample_environment_map<float>(map.view(), uniform2(i, 12));
+        const MapSample<float> s = sample_of<1>(map.view(), uniform2(i, 12));
         EXPECT_NEAR(s.pdf, 0.25f * inv_pi, 1e-8f);
         EXPECT_EQ(s.radiance, glm::vec3(0.0f));
         mean += glm::dvec3(s.wi) / 4000.0;
@@ -397,7 +414,7 @@ TEST_F(EnvironmentMaps, PolesSeamsAndBadNumbersAreFinite) {
     for (const float x : values) {
       for (const float y : values) {
         for (const float z : values) {
-          const auto light = evaluate_environment_map(data, Vec3<float>(x, y, z));
+          const auto light = light_of<1>(data, Vec3<float>(x, y, z));
           for (const float v : {light.radiance.x, light.radiance.y, light.radiance.z, light.pdf}) {
             ASSERT_TRUE(std::isfinite(v) && v >= 0.0f) << x << ", " << y << ", " << z;
           }
@@ -406,7 +423,7 @@ TEST_F(EnvironmentMaps, PolesSeamsAndBadNumbersAreFinite) {
     }
     for (const float x : {0.0f, 0x1p-24f, 0.5f, one_minus_epsilon}) {
       for (const float y : {0.0f, 0x1p-24f, 0.5f, one_minus_epsilon}) {
-        const MapSample<float> s = sample_environment_map<float>(data, Vec2<float>(x, y));
+        const MapSample<float> s = sample_of<1>(data, Vec2<float>(x, y));
         EXPECT_NEAR(length(s.wi), 1.0f, 1e-6f);
         EXPECT_TRUE(std::isfinite(s.pdf) && std::isfinite(s.radiance.y));
       }
@@ -426,8 +443,8 @@ TEST_F(EnvironmentMaps, MapsTurnAndMirror) {
       EXPECT_TRUE(keeps_angles(e.to_world));
       const EnvironmentMap turned(e);
       const glm::vec3 there = e.to_world * local * 0.2f;
-      const glm::vec3 a = environment_map_radiance(plain.view(), local);
-      const glm::vec3 b = environment_map_radiance(turned.view(), there);
+      const glm::vec3 a = radiance_of(plain.view(), local);
+      const glm::vec3 b = radiance_of(turned.view(), there);
       EXPECT_LT(glm::length(a - b), 1e-5f);
       EXPECT_NE(plain.fingerprint(), turned.fingerprint());
     }
@@ -469,12 +486,12 @@ void expect_same_bits(const EnvironmentMapData& data) {
       u[k] = uniform2(i, 13).x, v[k] = uniform2(i, 13).y;
       for (int axis = 0; axis < 3; ++axis) w[axis][k] = random_direction(i, 14)[axis];
     }
-    const auto s = sample_environment_map<V>(data, Vec2<V>(load<V>(u), load<V>(v)));
+    const auto s = sample_of<W>(data, Vec2<V>(load<V>(u), load<V>(v)));
     const Vec3<V> wi(load<V>(w[0]), load<V>(w[1]), load<V>(w[2]));
-    const auto light = evaluate_environment_map<V>(data, wi);
+    const auto light = light_of<W>(data, wi);
     for (int k = 0; k < W; ++k) {
-      const auto one = sample_environment_map<float>(data, Vec2<float>(u[k], v[k]));
-      const auto one_light = evaluate_environment_map<float>(data, lane(wi, k));
+      const auto one = sample_of<1>(data, Vec2<float>(u[k], v[k]));
+      const auto one_light = light_of<1>(data, lane(wi, k));
       ASSERT_TRUE(same_value(lane(s.wi, k), one.wi)) << "W=" << W;
       ASSERT_TRUE(same_value(lane(s.radiance, k), one.radiance)) << "W=" << W;
       ASSERT_TRUE(same_value(s.pdf[k], one.pdf)) << "W=" << W;
@@ -492,4 +509,4 @@ TEST_F(EnvironmentMaps, EveryWidthGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_environment_map

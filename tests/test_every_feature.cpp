@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_every_feature {
 namespace {
 
 using builtin::add_material;
@@ -303,4 +303,4 @@ TEST_F(EveryFeature, TakenAwayOneByOneGivesTheBytesOfTheGeneralKernel) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_every_feature

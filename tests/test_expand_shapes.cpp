@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lockstep {
+namespace lockstep::test_expand_shapes {
 namespace {
 
 SceneDescription scene_of(Material material, Geometry geometry = Sphere{}) {
@@ -79,4 +79,4 @@ TEST(ExpandShapes, WhatIsPlacedOftenStaysOneObject) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_expand_shapes

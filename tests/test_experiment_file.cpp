@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lockstep {
+namespace lockstep::test_experiment_file {
 namespace {
 
 struct ExperimentFile : TestWithFiles {
@@ -61,4 +61,4 @@ TEST_F(ExperimentFile, WhatIsWrittenIsReadAgain) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_experiment_file

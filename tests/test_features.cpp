@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_features {
 namespace {
 
 Scene small(const char* name, Isa isa) { return build(resized(read_scene(name), 37, 23), isa); }
@@ -113,4 +113,4 @@ TEST(Features, AreThoseOfTheScene) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_features

@@ -13,7 +13,7 @@
 #error "define LOCKSTEP_SHARED_DIR"
 #endif
 
-namespace lockstep {
+namespace lockstep::test_flip {
 namespace {
 
 Image constant(int width, int height, float value) {
@@ -294,4 +294,4 @@ TEST(HdrFlipGolden, ExposuresAreThoseOfTheAuthorsProgram) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_flip

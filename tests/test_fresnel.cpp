@@ -9,7 +9,7 @@
 #include <cmath>
 #include <complex>
 
-namespace lockstep {
+namespace lockstep::test_fresnel {
 namespace {
 
 // Snell's law and Fresnel's equations with a complex index n, as textbooks write them.
@@ -124,4 +124,4 @@ TEST(Fresnel, HasTheSameBitsAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_fresnel

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_gltf {
 namespace {
 
 namespace fs = std::filesystem;
@@ -430,4 +430,4 @@ TEST_F(Gltf, SharedModels) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_gltf

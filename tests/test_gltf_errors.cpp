@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_gltf_errors {
 namespace {
 
 // --- Broken files
@@ -224,4 +224,4 @@ TEST_F(Gltf, DamagedFilesGiveErrorsOrScenes) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_gltf_errors

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_gltf_materials {
 namespace {
 
 // A triangle whose material 0 has the given members, with texture coordinates and textures 0 to 3.
@@ -374,4 +374,4 @@ TEST_F(GltfMaterials, ImagesPastTheirBuffer) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_gltf_materials

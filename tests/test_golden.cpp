@@ -21,7 +21,7 @@
 #error "define LOCKSTEP_GOLDEN_DIR"
 #endif
 
-namespace lockstep {
+namespace lockstep::test_golden {
 namespace {
 
 constexpr int formats = 5;
@@ -129,4 +129,4 @@ INSTANTIATE_TEST_SUITE_P(Formats, Golden, testing::Values("pbrt", "xml", "gltf",
                          [](const auto& p) { return std::string(p.param); });
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_golden

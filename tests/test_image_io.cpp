@@ -21,7 +21,7 @@
 #include <sanitizer/lsan_interface.h>
 #endif
 
-namespace lockstep {
+namespace lockstep::test_image_io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -331,4 +331,4 @@ TEST_F(ImageFiles, FullDiskIsAnErrorAndLeavesNothing) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_image_io

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_instances {
 namespace {
 
 // A smooth ball and a flat quad that overhangs it.
@@ -105,4 +105,4 @@ TEST(Instances, HaveTheSameBytesAtEveryWidthAndMode) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_instances

@@ -13,7 +13,7 @@
 #include <numeric>
 #include <random>
 
-namespace lockstep {
+namespace lockstep::test_measured_choice {
 namespace {
 
 using Costs = std::array<double, MeasuredChoice::most>;
@@ -302,4 +302,4 @@ TEST(TraversalPolicy, LearnsByClass) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_measured_choice

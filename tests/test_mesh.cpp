@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace lockstep {
+namespace lockstep::test_mesh {
 namespace {
 
 glm::vec3 face_normal(const TriangleMesh& mesh, const glm::uvec3& t) {
@@ -256,4 +256,4 @@ TEST(LoopSubdivision, RefusesEdgesOfThreeFacesAndMixedWindings) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_mesh

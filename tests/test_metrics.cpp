@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lockstep {
+namespace lockstep::test_metrics {
 namespace {
 
 Image constant(int width, int height, float value) {
@@ -129,4 +129,4 @@ TEST(Metrics, ValuesThatAreNotFiniteAreLocated) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_metrics

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-namespace lockstep {
+namespace lockstep::test_mitsuba {
 namespace {
 
 // --- Documents
@@ -301,4 +301,4 @@ TEST_F(Mitsuba, OtherCamerasFiltersAndCounts) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_mitsuba

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_mitsuba_materials {
 namespace {
 
 // --- Materials
@@ -297,4 +297,4 @@ TEST_F(Mitsuba, CheckerboardsAndScales) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_mitsuba_materials

@@ -12,7 +12,7 @@
 #include <string>
 #include <variant>
 
-namespace lockstep {
+namespace lockstep::test_mitsuba_scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -219,4 +219,4 @@ TEST_F(SharedMitsuba, DamagedCopiesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_mitsuba_scenes

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_mitsuba_shapes {
 namespace {
 
 TEST_F(Mitsuba, BuiltInShapesFaceOutwards) {
@@ -334,4 +334,4 @@ TEST_F(Mitsuba, DamagedSerializedMeshesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_mitsuba_shapes

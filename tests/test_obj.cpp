@@ -18,7 +18,7 @@
 #include <string>
 #include <variant>
 
-namespace lockstep {
+namespace lockstep::test_obj {
 namespace {
 
 class Obj : public TestWithFiles {
@@ -257,4 +257,4 @@ TEST_F(Obj, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_obj

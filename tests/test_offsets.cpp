@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_offsets {
 namespace {
 
 constexpr std::uint32_t many = 1 << 16;
@@ -293,4 +293,4 @@ TEST(Strata, CellsFitTheLargestPowerOfFourPlanned) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_offsets

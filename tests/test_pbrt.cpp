@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_pbrt {
 namespace {
 
 // --- View
@@ -439,4 +439,4 @@ TEST_F(Pbrt, DamagedFilesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt

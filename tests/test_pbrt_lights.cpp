@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-namespace lockstep {
+namespace lockstep::test_pbrt_lights {
 namespace {
 
 TEST_F(Pbrt, AreaLights) {
@@ -187,4 +187,4 @@ TEST_F(Pbrt, IlluminantsByName) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt_lights

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_pbrt_materials {
 namespace {
 
 TEST_F(Pbrt, MaterialsOfV4) {
@@ -366,4 +366,4 @@ TEST_F(Pbrt, SharedPartsOfMixesAreCopiedOnce) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt_materials

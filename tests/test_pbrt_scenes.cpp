@@ -9,7 +9,7 @@
 #include <string>
 #include <variant>
 
-namespace lockstep {
+namespace lockstep::test_pbrt_scenes {
 namespace {
 
 namespace fs = std::filesystem;
@@ -217,4 +217,4 @@ TEST_F(SharedScene, DamagedCopiesAreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt_scenes

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <string>
 
-namespace lockstep {
+namespace lockstep::test_pbrt_shapes {
 namespace {
 
 TEST_F(Pbrt, TriangleMeshes) {
@@ -329,4 +329,4 @@ TEST_F(Pbrt, ObjectsDoNotEmit) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt_shapes

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-namespace lockstep {
+namespace lockstep::test_pbrt_textures {
 namespace {
 
 class PbrtTextures : public Pbrt {
@@ -309,4 +309,4 @@ TEST_F(PbrtTextures, BrokenTexturesSayWhereAndWhat) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt_textures

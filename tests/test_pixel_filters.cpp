@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_pixel_filters {
 namespace {
 
 constexpr int side = 8;           // pixels
@@ -104,4 +104,4 @@ TEST_F(PixelFilters, OvershootAtEdges) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pixel_filters

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_ply {
 namespace {
 
 class Ply : public TestWithFiles {
@@ -155,4 +155,4 @@ TEST_F(Ply, BrokenFilesSayWhereAndWhat) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_ply

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_profile {
 namespace {
 
 // Rays from above the blocks of the Cornell box along `directions`, as one queue.
@@ -161,4 +161,4 @@ TEST_F(SmallProfile, PageHoldsTheData) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_profile

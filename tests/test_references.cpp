@@ -15,7 +15,7 @@
 #error "define LOCKSTEP_SHARED_DIR"
 #endif
 
-namespace lockstep {
+namespace lockstep::test_references {
 namespace {
 
 struct Reference {
@@ -157,4 +157,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_references

@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_render_lights {
 namespace {
 
 using builtin::add_material;
@@ -418,4 +418,4 @@ TEST(Orthographic, IsShiftedInUnitsOfTheShorterSide) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_render_lights

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_render_materials {
 namespace {
 
 using builtin::add_material;
@@ -295,4 +295,4 @@ TEST(OneSided, CastsShadows) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_render_materials

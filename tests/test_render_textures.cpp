@@ -1,38 +1,21 @@
-// Renders of textures on surfaces, of holes in them and of maps that turn their normals, against
-// closed forms.
+// Renders of textures on surfaces against closed forms.
 #include "tests/t_square.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <numbers>
 
-namespace lockstep {
+namespace lockstep::test_render_textures {
 namespace {
 
 using builtin::add_material;
 using builtin::add_rectangle;
 
-constexpr double pi_double = 3.14159265358979323846;
-
-// Every pixel of one render, in which there is no noise.
-void expect_pixels(const Scene& scene, const PixelFunction& expected, float tolerance = 1e-4f) {
-  const Image image = rendered(scene, {.spp = 4, .depth = 1});
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      const glm::vec3 e = expected(x, y);
-      for (int c = 0; c < 3; ++c) {
-        ASSERT_NEAR(image.at(x, y)[c], e[c], tolerance) << x << ' ' << y << ' ' << c;
-      }
-    }
-  }
-}
-
 glm::vec3 texels(int x, int y) {
   return {float(1 + (3 * x + 5 * y) % 7) / 8.0f, float(1 + (x + 2 * y) % 5) / 6.0f, 0.5f};
 }
-
-// Images -----------------------------------------------------------------------------------------
 
 class RenderedTexture : public TestWithImages {
  protected:
@@ -208,9 +191,9 @@ TEST_F(RenderedTexture, OfSpheres) {
         const float r2 = sx * sx + sy * sy;
         if (r2 > 0.9f) continue;
         const glm::vec3 n(camera * glm::vec4(sx, sy, -std::sqrt(1.0f - r2), 0.0f));
-        double u = std::atan2(double(n.y), double(n.x)) / (2.0 * pi_double);
+        double u = std::atan2(double(n.y), double(n.x)) / (2.0 * std::numbers::pi);
         if (u < 0.0) u += 1.0;
-        const double v = std::acos(-double(n.z)) / pi_double;
+        const double v = std::acos(-double(n.z)) / std::numbers::pi;
         const double a = u * 16.0, b = v * 8.0;
         // Not where rounding decides.
         if (std::abs(a - std::round(a)) < 1e-2 || std::abs(b - std::round(b)) < 1e-2) continue;
@@ -286,225 +269,5 @@ TEST_F(RenderedTexture, OfAMixesAmount) {
   }
 }
 
-// Opacity ----------------------------------------------------------------------------------------
-
-constexpr float wall_radiance = 3.0f;
-
-// A black square with holes in z = 0, before a wall that shines towards it.
-SceneDescription lattice(FloatInput opacity, float cutoff = 0.0f) {
-  Material black = DiffuseMaterial{glm::vec3(0.0f)};
-  black.opacity = opacity;
-  black.opacity_cutoff = cutoff;
-  SceneDescription d = square(black);
-  d.environment.reset();
-  const int solid = add_material(d, DiffuseMaterial{glm::vec3(0.0f)});
-  add_rectangle(d, {0, 0, -1}, {9, 0, 0}, {0, 9, 0}, solid, Emission{glm::vec3(wall_radiance)});
-  return d;
-}
-
-class Opacity : public TestWithImages {};
-
-TEST_F(Opacity, IsTheShareOfCameraRaysThatEnd) {
-  for (const float opacity : {0.0f, 0.25f, 0.9f}) {
-    const Scene scene = build(lattice(opacity));
-    for (const char* sampler : {"random", "owen"}) {
-      expect_mean(observe(scene, {.sampler = sampler, .spp = 64}).mean,
-                  (1.0 - double(opacity)) * double(wall_radiance));
-    }
-  }
-}
-
-// A floor under a lamp with a lattice between them: 3/4 of the light of the lamp alone, which a
-// shadow ray finds at one interaction and a path at two.
-TEST_F(Opacity, IsTheShareOfShadowRaysThatEnd) {
-  for (const bool sphere : {false, true}) {
-    SceneDescription d;
-    const int grey = add_material(d, DiffuseMaterial{glm::vec3(0.5f)});
-    const int black = add_material(d, DiffuseMaterial{glm::vec3(0.0f)});
-    Material holes = DiffuseMaterial{glm::vec3(0.0f)};
-    holes.opacity = 0.25f;
-    const int lace = add_material(d, holes);
-    add_rectangle(d, {0, 0, 0}, {5, 0, 0}, {0, 5, 0}, grey);
-    add_rectangle(d, {0, 0, 4}, {0, 0.5f, 0}, {0.5f, 0, 0}, black, Emission{glm::vec3(20.0f)});
-    look_straight(d, {-3, 0, 3}, {0, 0, 0}, 0.01f, 8, 8);
-    const Plan plan{.spp = 64, .seeds = 24};
-    const double open = observe(build(d), plan).mean.mean;
-    ASSERT_GT(open, 0.1);
-    if (sphere) {  // around the lamp: rays leave it once
-      builtin::add_sphere(d, {0, 0, 4}, 1.0f, lace);
-    } else {
-      add_rectangle(d, {0, 0, 2}, {0, 1, 0}, {1, 0, 0}, lace);
-    }
-    for (const int depth : {1, 2}) {
-      Plan with = plan;
-      with.depth = depth;
-      expect_mean(observe(build(d), with).mean, 0.75 * open, 1e-3);
-    }
-  }
-}
-
-TEST_F(Opacity, WithACutoffIsAllOrNothing) {
-  CheckerboardTexture checks;  // one pixel each
-  checks.even = glm::vec3(0.6f), checks.odd = glm::vec3(0.4f);
-  checks.uv = {{8.0f, 0.0f}, {0.0f, 8.0f}, glm::vec2(0.0f)};
-  SceneDescription d = lattice(textured_number(0), 0.5f);
-  add_texture(d, checks);
-  const Scene scene = build(std::move(d));
-  for (const char* sampler : {"owen", "random", "cpt"}) {
-    const Image image = rendered(scene, {.sampler = sampler, .spp = 16});
-    for (int y = 0; y < 8; ++y) {
-      for (int x = 0; x < 8; ++x) {
-        ASSERT_EQ(image.at(x, y)[0], (x + y) % 2 == 0 ? 0.0f : wall_radiance) << x << ' ' << y;
-      }
-    }
-  }
-}
-
-// Exactly the cutoff is there; constants count too.
-TEST_F(Opacity, AtTheCutoffIsThere) {
-  EXPECT_EQ(mean_of(rendered(build(lattice(0.5f, 0.5f)), {})), 0.0);
-  EXPECT_EQ(mean_of(rendered(build(lattice(0.49f, 0.5f)), {})), double(wall_radiance));
-}
-
-TEST_F(Opacity, ComesFromTheChannelItNames) {
-  PngImage rgba{8, 1, 4, 8, {}};
-  for (int x = 0; x < 8; ++x) {
-    for (const int v : {0, 255, 0, x % 2 * 255}) rgba.values.push_back(std::uint16_t(v));
-  }
-  FloatInput alpha = textured_number(0);
-  alpha.channel = 3;
-  for (const float cutoff : {0.0f, 0.5f}) {
-    SceneDescription d = lattice(alpha, cutoff);
-    add_texture(d, texture_of(png("alpha", rgba)));
-    const Image image = rendered(build(std::move(d)), {});
-    for (int x = 0; x < 8; ++x) EXPECT_EQ(image.at(x, 3)[0], x % 2 ? 0.0f : wall_radiance);
-  }
-}
-
-// Normals ----------------------------------------------------------------------------------------
-
-constexpr float albedo = 0.5f;
-
-// What a square of this normal reflects of unit light that comes from `towards`.
-float reflected(glm::vec3 normal, glm::vec3 towards) {
-  const float cosine = glm::dot(glm::normalize(normal), glm::normalize(towards));
-  return albedo / float(pi_double) * std::max(cosine, 0.0f);
-}
-
-const glm::vec3 lights_from[] = {{0, 0, 1}, {1, 0, 1},  {-1, 0, 1},
-                                 {0, 1, 1}, {0, -1, 1}, {0.5f, 0.3f, 1}};
-
-class Normals : public TestWithImages {
- protected:
-  SceneDescription square_with(const Material& material, Texture texture) const {
-    SceneDescription d = square(material, 4);
-    add_texture(d, std::move(texture));
-    d.environment.reset();
-    return d;
-  }
-  // That the square looks as one of this normal, from the front or from behind.
-  static void expect_normal(SceneDescription d, glm::vec3 normal, float tolerance = 1e-5f,
-                            float side = 1.0f) {
-    look_straight(d, {0, 0, 3.0f * side}, {0, 0, 0}, 1.8f, 4, 4);
-    for (const glm::vec3 from : lights_from) {
-      const glm::vec3 towards = side * from;
-      d.lights = {DistantLight{-glm::normalize(towards), glm::vec3(1.0f)}};
-      SCOPED_TRACE(std::to_string(towards.x) + ' ' + std::to_string(towards.y));
-      expect_pixels(
-          build(d), [&](int, int) { return glm::vec3(reflected(side * normal, towards)); },
-          tolerance);
-    }
-  }
-  ImageTexture normal_map(glm::vec3 normal) const {
-    return texture_of(exr("normal", 2, 2, [&](int, int) { return 0.5f + 0.5f * normal; }));
-  }
-  static Material mapped(float scale = 1.0f) {
-    Material m = DiffuseMaterial{glm::vec3(albedo)};
-    m.normal_map = 0;
-    m.normal_scale = scale;
-    return m;
-  }
-};
-
-TEST_F(Normals, OfAFlatMapChangeNothing) {
-  expect_normal(square_with(mapped(), normal_map({0, 0, 1})), {0, 0, 1});
-}
-
-TEST_F(Normals, OfAMapHaveXAlongUAndYAgainstV) {
-  const glm::vec3 n = glm::normalize(glm::vec3(0.3f, 0.2f, 1.0f));
-  SceneDescription d = square_with(mapped(), normal_map(n));
-  for (const float side : {1.0f, -1.0f}) expect_normal(d, n, 1e-5f, side);
-  auto& uvs = std::get<TriangleMesh>(d.shapes[0].geometry).uvs;
-  for (glm::vec2& uv : uvs) uv.x = 3.0f - 2.0f * uv.x;  // u to the left
-  expect_normal(d, {-n.x, n.y, n.z});
-  for (glm::vec2& uv : uvs) uv = {uv.y, uv.x};  // u down, v to the left
-  expect_normal(d, {n.y, -n.x, n.z});
-  // Coordinates that do not span the surface give no direction but that of the normal.
-  for (glm::vec2& uv : uvs) uv = glm::vec2(0.5f);
-  d.textures[0] = normal_map({0, 0, 1});
-  expect_normal(d, {0, 0, 1});
-}
-
-TEST_F(Normals, OfAMapAreScaled) {
-  const glm::vec3 n = glm::normalize(glm::vec3(0.3f, 0.2f, 1.0f));
-  expect_normal(square_with(mapped(0.5f), normal_map(n)), {0.5f * n.x, 0.5f * n.y, n.z});
-}
-
-TEST_F(Normals, OfATextureProgramAreItsColours) {
-  CheckerboardTexture checks;
-  checks.even = glm::vec3(0.7f, 0.5f, 0.9f), checks.odd = checks.even;
-  expect_normal(square_with(mapped(), checks), {0.4f, 0.0f, 0.8f});
-}
-
-// Heights that rise along u or v, on a square two wide: half as steep as the texture.
-TEST_F(Normals, OfARampAreThoseOfATiltedSquare) {
-  for (const bool along_u : {true, false}) {
-    ImageTexture ramp = texture_of(
-        exr("ramp", 8, 8, [&](int x, int y) { return glm::vec3(float(along_u ? x : y) / 8.0f); }),
-        TextureFilter::Bilinear);
-    ramp.wrap_u = ramp.wrap_v = TextureWrap::Clamp;
-    for (const float height : {0.5f, -1.0f}) {
-      Material m = DiffuseMaterial{glm::vec3(albedo)};
-      m.bump = textured_number(0, height);
-      const float slope = 0.5f * height;
-      // Between the middles of the outer texels.
-      SceneDescription d = square_with(m, ramp);
-      for (glm::vec2& uv : std::get<TriangleMesh>(d.shapes[0].geometry).uvs) {
-        uv = 0.25f + 0.5f * uv;
-      }
-      // Half of the texture on the square: half as steep again.
-      const glm::vec3 n = along_u ? glm::vec3(-0.5f * slope, 0, 1) : glm::vec3(0, 0.5f * slope, 1);
-      expect_normal(d, n, 1e-3f);
-      expect_normal(d, n, 1e-3f, -1.0f);
-    }
-  }
-}
-
-TEST_F(Normals, OfAConstantHeightChangeNothing) {
-  Material m = DiffuseMaterial{glm::vec3(albedo)};
-  m.bump = textured_number(0, 5.0f);
-  expect_normal(square_with(m, normal_map({0.2f, 0.4f, 0.6f})), {0, 0, 1});
-}
-
-// On a sphere u runs to the east and v to the north, so y points south.
-TEST_F(Normals, OfAMapOnASphere) {
-  const glm::vec3 n = glm::normalize(glm::vec3(0.3f, 0.2f, 1.0f));
-  SceneDescription d = square_with(mapped(), normal_map(n));
-  d.shapes.clear();
-  builtin::add_sphere(d, {0, 0, 0}, 1.0f, 0);
-  look_straight(d, {3, 0, 0}, {0, 0, 0}, 0.002f, 4, 4);
-  for (const glm::vec3 towards :
-       {glm::vec3(1, 1, 0), glm::vec3(1, -1, 0), glm::vec3(1, 0, 1), glm::vec3(1, 0, -1)}) {
-    d.lights = {DistantLight{-glm::normalize(towards), glm::vec3(1.0f)}};
-    // At +x: east is +y, north +z.
-    expect_pixels(
-        build(d),
-        [&](int, int) {
-          return glm::vec3(reflected({n.z, n.x, -n.y}, towards));
-        },
-        1e-3f);
-  }
-}
-
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_render_textures

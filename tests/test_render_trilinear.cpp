@@ -12,7 +12,7 @@
 #include <cmath>
 #include <functional>
 
-namespace lockstep {
+namespace lockstep::test_render_trilinear {
 namespace {
 
 using builtin::add_material;
@@ -299,4 +299,4 @@ TEST_F(RenderedTrilinear, IsAFeatureWhereAnImageIsUsed) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_render_trilinear

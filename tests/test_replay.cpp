@@ -12,7 +12,7 @@
 #include <numeric>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_replay {
 namespace {
 
 constexpr int depth = 3;
@@ -203,4 +203,4 @@ TEST(RenderStats, RaysAreCountedByKindAndMode) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_replay

@@ -18,7 +18,7 @@
 #include <random>
 #include <sstream>
 
-namespace lockstep {
+namespace lockstep::test_report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -248,4 +248,4 @@ TEST(Figures, HaveScriptsDataAndPdf) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_report

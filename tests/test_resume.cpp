@@ -16,7 +16,7 @@
 #include <map>
 #include <sstream>
 
-namespace lockstep {
+namespace lockstep::test_resume {
 namespace {
 
 std::string bytes_of(const fs::path& path) {
@@ -278,4 +278,4 @@ TEST_F(Folders, RunsAreListed) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_resume

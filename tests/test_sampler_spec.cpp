@@ -8,7 +8,7 @@
 
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_sampler_spec {
 namespace {
 
 // The message with which `text` is refused; empty where it is accepted.
@@ -343,4 +343,4 @@ TEST(SamplerSpec, ListsAreSplitWhereASamplerBegins) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_sampler_spec

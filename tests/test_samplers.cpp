@@ -11,7 +11,7 @@
 #include <numeric>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_samplers {
 namespace {
 
 constexpr float below_one = 1.0f - 0x1p-24f;
@@ -386,4 +386,4 @@ TEST(Samplers, SeriesOfAPixelAreUncorrelated) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_samplers

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_scene_overrides {
 namespace {
 
 class SceneOverridesTest : public TestWithFiles {};
@@ -352,4 +352,4 @@ TEST_F(SceneOverridesTest, ScenesAreReadWithThem) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_scene_overrides

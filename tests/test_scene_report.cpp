@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace lockstep {
+namespace lockstep::test_scene_report {
 namespace {
 
 class SceneReportTest : public TestWithFiles {
@@ -303,4 +303,4 @@ TEST_F(SceneReportTest, ScenesThatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_scene_report

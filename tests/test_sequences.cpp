@@ -11,7 +11,7 @@
 #include <cmath>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_sequences {
 namespace {
 
 const std::uint32_t seeds[] = {0, 1, 12345};
@@ -386,4 +386,4 @@ TEST(ZSobol, LargePlansKeepNetsWithinTiles) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_sequences

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_simd {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -263,4 +263,4 @@ TEST(SimdScalar, OperationsAreWhatTheirNamesSay) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_simd

@@ -14,7 +14,7 @@
 #include <limits>
 #include <numbers>
 
-namespace lockstep {
+namespace lockstep::test_simd_math {
 namespace {
 
 double error_of_eighth(float x) {
@@ -186,4 +186,4 @@ TEST(Frame, ToLocalUndoesToWorld) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_simd_math

@@ -12,7 +12,7 @@
 #include <array>
 #include <cstring>
 
-namespace lockstep {
+namespace lockstep::test_simd_rows {
 namespace {
 
 // Random bits; as floats they may be NaN, which must pass through untouched.
@@ -185,4 +185,4 @@ TEST(Bits, AreMirroredAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_simd_rows

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace lockstep {
+namespace lockstep::test_statistics {
 namespace {
 
 TEST(Statistics, QuantilesInterpolateBetweenOrderStatistics) {
@@ -171,4 +171,4 @@ TEST(Statistics, MedianUncertaintyIsHonest) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_statistics

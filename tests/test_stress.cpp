@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-namespace lockstep {
+namespace lockstep::test_stress {
 namespace {
 
 constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
@@ -120,4 +120,4 @@ TEST(SceneWarnings, TellWhatLiesTooFarFromTheOrigin) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_stress

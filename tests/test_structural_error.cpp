@@ -16,7 +16,7 @@
 #include <numbers>
 #include <random>
 
-namespace lockstep {
+namespace lockstep::test_structural_error {
 namespace {
 
 constexpr std::pair<int, int> kOddSizes[] = {{1, 1}, {1, 300}, {300, 1}, {7, 5}, {11, 12}};
@@ -369,4 +369,4 @@ TEST(Spectrum, AveragesPowerNotErrors) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_structural_error

@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_tev_display {
 namespace {
 
 using namespace std::chrono_literals;
@@ -233,4 +233,4 @@ TEST(TevDisplay, ReadsAddresses) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_tev_display

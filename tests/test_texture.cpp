@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_texture {
 namespace {
 
 // Nearest texels change here, and rounding decides.
@@ -267,4 +267,4 @@ TEST_F(Textures, EveryWidthGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_texture

@@ -11,7 +11,7 @@
 
 #include <limits>
 
-namespace lockstep {
+namespace lockstep::test_texture_footprint {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -254,4 +254,4 @@ TEST_F(FootprintLookups, HaveTheSameBitsAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_texture_footprint

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_texture_store {
 namespace {
 
 // Expressions -----------------------------------------------------------------------------------
@@ -178,4 +178,4 @@ TEST_F(Textures, BadImagesInMemoryAndBadGammasAreErrors) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_texture_store

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lockstep {
+namespace lockstep::test_traversal {
 namespace {
 
 constexpr TraversalMode single_rays{Packets::Single, false};
@@ -157,4 +157,4 @@ TEST(TraversalNames, OthersAreRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_traversal

@@ -17,7 +17,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lockstep {
+namespace lockstep::test_unbiased {
 namespace {
 
 constexpr int side = 8;
@@ -157,4 +157,4 @@ TEST(Unbiased, EverySamplerInABoxWithALamp) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_unbiased

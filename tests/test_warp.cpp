@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_warp {
 namespace {
 
 constexpr int chi_square_tests = 12;  // in this file
@@ -254,4 +254,4 @@ TEST(Warp, HasTheSameBitsAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_warp

@@ -10,7 +10,7 @@
 #include <limits>
 #include <numeric>
 
-namespace lockstep {
+namespace lockstep::test_weight_map {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -318,4 +318,4 @@ TEST(MeanWeight, IsTheMean) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_weight_map

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_white_furnace {
 namespace {
 
 using builtin::add_material;
@@ -198,4 +198,4 @@ TEST(RoughDiffuse, FaceOnHasItsFirstCoefficient) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_white_furnace

@@ -12,7 +12,7 @@
 #error "define LOCKSTEP_SHARED_DIR"
 #endif
 
-namespace lockstep {
+namespace lockstep::test_yee {
 namespace {
 
 float linear(int code) {
@@ -177,4 +177,4 @@ INSTANTIATE_TEST_SUITE_P(
                     Golden{"killeroo_ref.png", "killeroo_zsobol_16.png", kLuminance, 2}));
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_yee

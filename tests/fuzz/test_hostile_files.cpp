@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace lockstep {
+namespace lockstep::test_hostile_files {
 namespace {
 
 std::string repeated(int times, const std::string& text) {
@@ -243,4 +243,4 @@ TEST_F(HostileFiles, SerializedCountsThatNothingBacks) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_hostile_files
