@@ -11,10 +11,6 @@
 namespace lockstep::fuzz {
 namespace {
 
-void require(bool fine, const char* what) {
-  if (!fine) throw Unusable(what);
-}
-
 bool is_finite(float v) { return std::isfinite(v); }
 template <int N>
 bool is_finite(const glm::vec<N, float>& v) {

@@ -2,14 +2,9 @@
 #pragma once
 
 #include "core/scene_description.h"
-
-#include <stdexcept>
+#include "tests/fuzz/own_errors.h"
 
 namespace lockstep::fuzz {
-
-struct Unusable : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // Checks that indices are in range, arrays match, and positions, normals, texture coordinates,
 // lights and the camera are finite; then flattens the scene unless it is large (its arrays must be
