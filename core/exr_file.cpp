@@ -3,6 +3,7 @@
 #include "core/exr_file.h"
 
 #include "core/error.h"
+#include "core/image_limits.h"
 
 #include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -35,7 +36,18 @@ std::string reason(const Iex::BaseExc& exception) {
   return quote == std::string::npos ? text : text.substr(quote + 3);
 }
 
+// Whatever a header claims, OpenEXR then takes no memory for.
+void limit_headers() {
+  static const bool once = [] {
+    Imf::Header::setMaxImageSize(max_image_side, max_image_side);
+    Imf::Header::setMaxTileSize(max_image_side, max_image_side);
+    return true;
+  }();
+  static_cast<void>(once);
+}
+
 std::unique_ptr<Imf::MultiPartInputFile> open_exr(const std::string& path) {
+  limit_headers();
   try {
     return std::make_unique<Imf::MultiPartInputFile>(path.c_str(), no_threads);
   } catch (const Iex::BaseExc& exception) {
@@ -104,6 +116,10 @@ Image read_rows(Imf::MultiPartInputFile& parts, const std::vector<std::string>& 
   Image image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
+  if (size_t(image.width) * size_t(image.height) > max_image_pixels) {
+    throw Error("an image of " + std::to_string(image.width) + " x " +
+                std::to_string(image.height) + " pixels is too large; scale it down");
+  }
   image.pixels.reserve(size_t(image.width) * size_t(image.height) * 3);
   std::vector<float> row(size_t(image.width) * names.size());
   file.setFrameBuffer(frame_buffer(row.data(), window, names, 0));

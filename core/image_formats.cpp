@@ -1,6 +1,7 @@
 // The module of image formats: everything that OpenImageIO reads, and what it encodes in memory.
 #include "core/image_formats.h"
 
+#include "core/image_limits.h"
 #include "core/srgb.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -72,6 +73,16 @@ void check_flat(const OIIO::ImageSpec& spec) {
   }
 }
 
+size_t pixel_count(const OIIO::ImageSpec& spec) {
+  if (spec.width <= 0 || spec.height <= 0) throw std::runtime_error("the image has no pixels");
+  return size_t(spec.width) * size_t(spec.height);
+}
+
+std::runtime_error too_large(const OIIO::ImageSpec& spec) {
+  return std::runtime_error("an image of " + std::to_string(spec.width) + " x " +
+                            std::to_string(spec.height) + " pixels is too large; scale it down");
+}
+
 bool is_srgb(const OIIO::ImageSpec& spec) {
   if (spec.format.is_floating_point()) return false;
   const std::string space = spec.get_string_attribute("oiio:ColorSpace", "sRGB");
@@ -85,9 +96,11 @@ void read_pixels(OwnedResult& result, const std::string& path) {
   check_flat(spec);
   const auto channels = colour_channels(spec);
   const int last = std::max({channels[0], channels[1], channels[2]}) + 1;
-  const size_t count = size_t(spec.width) * size_t(spec.height);
-  std::vector<float> stored(count * size_t(last));
-  if (!input->read_image(0, 0, 0, last, OIIO::TypeFloat, stored.data())) {
+  const size_t count = pixel_count(spec);
+  if (count > max_image_pixels) throw too_large(spec);
+  // Not touched before the pixels come.
+  const auto stored = std::make_unique_for_overwrite<float[]>(count * size_t(last));
+  if (!input->read_image(0, 0, 0, last, OIIO::TypeFloat, stored.get())) {
     throw failure("damaged image", input->geterror());
   }
   const bool decode = is_srgb(spec);
@@ -150,18 +163,14 @@ void read_stored_pixels(OwnedResult& result, const std::string& path,
   const auto input = open_input(path, memory);
   const OIIO::ImageSpec& spec = input->spec();
   check_flat(spec);
-  if (spec.width <= 0 || spec.height <= 0) throw std::runtime_error("the image has no pixels");
+  const size_t count = pixel_count(spec);
   result.depth = depth_of(spec.format);
   const StoredType type = stored_type(result.depth);
   const auto channels = colour_channels(spec);
   const int alpha = spec.alpha_channel;
   const int last = std::max({channels[0], channels[1], channels[2], alpha}) + 1;
-  const size_t count = size_t(spec.width) * size_t(spec.height);
   const size_t stride = size_t(std::max(last, 4)) * type.size;
-  if (count * stride > max_stored_bytes) {
-    throw std::runtime_error("an image of " + std::to_string(spec.width) + " x " +
-                             std::to_string(spec.height) + " pixels is too large; scale it down");
-  }
+  if (count * stride > max_stored_bytes) throw too_large(spec);
   result.stored_values.reset(new unsigned char[count * stride]);
   if (!input->read_image(0, 0, 0, last, type.type, result.stored_values.get(),
                          OIIO::stride_t(stride))) {

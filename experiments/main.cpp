@@ -1,5 +1,6 @@
 // The program: chooses a subcommand, and turns errors into one line and an exit status.
 #include "core/error.h"
+#include "core/location.h"
 #include "experiments/commands/commands.h"
 #include "experiments/output/machine.h"
 #include "experiments/output/progress.h"
@@ -7,18 +8,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <utility>
 
 namespace {
 
 enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2 };
 
 int report(std::string message, ExitStatus status) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  fmt::print(stderr, "lockstep: {}\n", message);
+  fmt::print(stderr, "lockstep: {}\n", lockstep::printable(std::move(message), ' '));
   return status;
 }
 

@@ -268,6 +268,10 @@ TEST_F(ImageFiles, UnreadableFilesAreErrors) {
 TEST_F(ImageFiles, VastDamagedHeaderIsAnError) {
   std::ofstream(path("vast.exr"), std::ios::binary) << raw_exr(1 << 29, {{"Y", 2, "few"}});
   expect_one_line_naming(error_of([&] { read_image(path("vast.exr")); }), "vast.exr");
+  // Room for it may be promised, so that reading it would take long.
+  std::ofstream(path("vast.pfm")) << "PF\n32768 32768\n-1.0\n";
+  EXPECT_NE(error_of([&] { read_image(path("vast.pfm")); }).find("32768 pixels is too large"),
+            std::string::npos);
 }
 
 // The module of other formats is looked for beside the program: a copy of this one elsewhere has

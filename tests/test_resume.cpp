@@ -261,7 +261,8 @@ TEST_F(Folders, DepthsAreExperimentsOfTheirOwn) {
 TEST_F(Folders, RunsAreListed) {
   compare(settings_in("all/complete"), {});
   stopped_after(settings_in("all/deep/stopped"), 3);
-  write("all/damaged/journal.jsonl", "nothing\n");
+  write("all/damaged/journal.jsonl",
+        "nothing\n" + std::string(1'000'000, '[') + std::string(1'000'000, ']') + "\n");
   const std::vector<ListedRun> runs = list_runs(path("all"));
   ASSERT_EQ(runs.size(), 3u);
   std::map<std::string, ListedRun> by_name;

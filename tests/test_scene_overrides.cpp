@@ -94,6 +94,7 @@ TEST_F(SceneOverridesTest, WrongCamerasAreSaidInOneLine) {
       {"target=inf,0,0", "target takes three numbers"},
       {"target=0,nan,0", "target takes three numbers"},
       {"target=0,1e99,0", "target takes three numbers"},
+      {"target=0,-1e19,0", "target is beyond 1e+18"},
       {"up=0,0,0", "up has no direction"},
       {"fov=0", "fov takes degrees between 0 and 180"},
       {"fov=180", "between 0 and 180"},
@@ -133,7 +134,9 @@ TEST_F(SceneOverridesTest, WrongCameraFilesAreSaidInOneLine) {
       {"{\"origin\": [0, 0, [1]]}", "origin takes three numbers"},
       {"{\"origin\": 5}", "origin takes three numbers"},
       {"{\"fov\": null}", "fov takes degrees"},
-      {"{\"lens\": 1e60}", "lens takes a radius"}};
+      {"{\"lens\": 1e60}", "lens takes a radius"},
+      {"{\"lens\": 1e19}", "lens is beyond 1e+18"},
+      {"{\"lens\": 1e999}", "bad.json: a number is too large"}};
   for (const auto& [text, part] : wrong) {
     const std::string file = write("bad.json", text);
     expect_one_line_with(error_of([&] { parse_camera(file); }), part);

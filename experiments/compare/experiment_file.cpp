@@ -1,6 +1,7 @@
 #include "experiments/compare/experiment_file.h"
 
 #include "core/error.h"
+#include "core/location.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -112,7 +113,8 @@ toml::table parse_file(const std::string& path) {
   try {
     return toml::parse_file(path);
   } catch (const toml::parse_error& failure) {
-    throw error_at(path, int(failure.source().begin.line), std::string(failure.description()));
+    throw error_at(path, int(failure.source().begin.line),
+                   printable(std::string(failure.description())));
   }
 }
 
@@ -161,7 +163,7 @@ std::vector<ExperimentEntry> read_experiment(const std::string& path) {
   for (const auto& [name, node] : table) {
     const ExperimentKey* key = key_named(name.str());
     if (!key) {
-      throw error_at(path, int(name.source().begin.line), unknown_key(name.str()));
+      throw error_at(path, int(name.source().begin.line), printable(unknown_key(name.str())));
     }
     entries.push_back(read_entry(path, *key, node));
   }

@@ -127,8 +127,9 @@ std::vector<Json> parse_lines(const std::string& text) {
   std::vector<Json> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) {
-    const Json json = Json::parse(line, nullptr, false);
-    lines.push_back(json.is_discarded() ? Json() : json);
+    // Moved, not copied: a copy takes stack for every level of nesting.
+    Json json = Json::parse(line, nullptr, false);
+    lines.push_back(json.is_discarded() ? Json() : std::move(json));
   }
   return lines;
 }

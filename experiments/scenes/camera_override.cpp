@@ -1,6 +1,7 @@
 #include "experiments/scenes/camera_override.h"
 
 #include "core/error.h"
+#include "core/location.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kKeys = "origin, target, up, fov, lens and focus";
 constexpr std::uintmax_t kLargestFile = 1 << 20;  // bytes
+constexpr float kFarthest = 1e18f;                // its square is finite
 
 using Point = std::optional<glm::vec3> CameraOverride::*;
 using Number = std::optional<float> CameraOverride::*;
@@ -54,6 +56,9 @@ constexpr std::array kNumbers{
 
 // Sets what `key` names; values are finite. Returns what is wrong, empty if nothing is.
 std::string set(CameraOverride& camera, std::string_view key, const std::vector<float>& values) {
+  for (const float v : values) {
+    if (std::abs(v) > kFarthest) return fmt::format("{} is beyond {:g}", key, kFarthest);
+  }
   for (const PointKey& known : kPoints) {
     if (known.key != key) continue;
     auto& member = camera.*known.member;
@@ -126,6 +131,8 @@ nlohmann::json read_json(const std::string& path) {
     const auto end = text.begin() + std::ptrdiff_t(std::min(error.byte, text.size()));
     throw error_at(path, 1 + int(std::count(text.begin(), end, '\n')),
                    "not JSON; write an object such as {\"origin\": [0, 1.5, 4], \"fov\": 40}");
+  } catch (const nlohmann::json::out_of_range&) {
+    throw Error(fmt::format("--camera: {}: a number is too large", path));
   }
 }
 
@@ -150,7 +157,7 @@ CameraOverride parse_file(const std::string& path) {
   CameraOverride camera;
   for (const auto& [key, value] : json.items()) {
     const std::string wrong = set(camera, key, numbers(value));
-    if (!wrong.empty()) throw Error(fmt::format("--camera: {}: {}", path, wrong));
+    if (!wrong.empty()) throw Error(fmt::format("--camera: {}: {}", path, printable(wrong)));
   }
   return camera;
 }
