@@ -20,6 +20,7 @@ enum class Feature : unsigned {
   DiffuseTransmission,
   Dielectric,
   Principled,
+  Measured,
   Mix,
   QuadLights,
   TriangleLights,
@@ -44,7 +45,7 @@ enum class Feature : unsigned {
   Lens,
   Orthographic,
 };
-inline constexpr unsigned feature_count = 33;
+inline constexpr unsigned feature_count = 34;
 
 using FeatureMask = std::uint64_t;
 static_assert(feature_count < 64);

@@ -257,7 +257,7 @@ std::uint64_t fingerprint(const FlatScene& flat) {
   using Floats = std::initializer_list<const std::vector<float>*>;
   for (const auto* values :
        Floats{&flat.positions, &flat.normals, &flat.uvs, &flat.spheres, &flat.material_parameters,
-              &flat.light_rows, &flat.light_cdf, &flat.filter_x, &flat.filter_y,
+              &flat.measured, &flat.light_rows, &flat.light_cdf, &flat.filter_x, &flat.filter_y,
               &flat.filter_weight_x, &flat.filter_weight_y}) {
     print.add_all(*values);
   }
@@ -290,9 +290,10 @@ std::size_t memory_bytes(const FlatScene& flat) {
   };
   return sum(flat.positions, flat.normals, flat.uvs, flat.triangles, flat.geometries,
              flat.geometry_rows, flat.coincident, flat.spheres, flat.material_kinds,
-             flat.material_parameters, flat.material_maps, flat.texture_bindings, flat.opacities,
-             flat.light_of_primitive, flat.light_kinds, flat.light_rows, flat.light_cdf,
-             flat.filter_x, flat.filter_y, flat.filter_weight_x, flat.filter_weight_y);
+             flat.material_parameters, flat.measured, flat.material_maps, flat.texture_bindings,
+             flat.opacities, flat.light_of_primitive, flat.light_kinds, flat.light_rows,
+             flat.light_cdf, flat.filter_x, flat.filter_y, flat.filter_weight_x,
+             flat.filter_weight_y);
 }
 
 SceneData view(const FlatScene& flat) {
@@ -305,8 +306,13 @@ SceneData view(const FlatScene& flat) {
   if (!flat.coincident.empty()) d.coincident = flat.coincident.data();
   d.instances = {std::int32_t(flat.geometries.size()), flat.instance_rows.data()};
   d.geometry = {flat.geometry_rows.data(), flat.spheres.data()};
-  d.materials = {flat.material_parameters.data(), flat.material_kinds.data(),
-                 flat.material_maps.data(), flat.texture_bindings.data(), nullptr};
+  d.materials = {flat.material_parameters.data(),
+                 flat.material_kinds.data(),
+                 flat.material_maps.data(),
+                 flat.texture_bindings.data(),
+                 nullptr,
+                 flat.measured.data(),
+                 std::int32_t(flat.measured.size() / measured_floats)};
   d.lights = {int(flat.light_kinds.size()), flat.light_rows.data(), flat.light_cdf.data()};
   d.camera = flat.camera;
   if (!flat.filter_x.empty()) {

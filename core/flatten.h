@@ -47,6 +47,7 @@ struct FlatScene {
   std::vector<std::int32_t> material_kinds;
   std::vector<float> material_parameters;
   std::vector<std::int32_t> material_maps;
+  std::vector<float> measured;  // the materials' tables, one after the other
   std::vector<TextureBinding> texture_bindings;
   std::vector<FeatureMask>
       material_features;           // that hits on each material need, mixes' parts aside
@@ -77,7 +78,8 @@ std::uint64_t fingerprint(const FlatScene& flat);
 SceneData view(const FlatScene& flat);
 
 // core/flatten_materials.cpp: fills the material tables, one row per material.
-// Throws Error where a mix contains itself or a material that does not exist.
+// Throws Error where a mix contains itself or a material, or another refers to a table, that does
+// not exist.
 void flatten_materials(const SceneDescription& description, FlatScene& flat);
 
 // The binding of an input to its texture.

@@ -89,6 +89,7 @@ Row row(const PrincipledMaterial& m) {
       .add(m.coat)
       .add(m.coat_alpha);
 }
+Row row(const MeasuredMaterial& m) { return Row(MaterialKind::Measured).add(float(m.table)); }
 Row row(const MixMaterial& m) {
   return Row(MaterialKind::Mix).add(float(m.first)).add(float(m.second)).add(m.amount);
 }
@@ -145,6 +146,24 @@ void append_material(const Material& material, FlatScene& flat) {
       {material.opacity.value, binding_of(material.opacity, 0), material.opacity_cutoff});
 }
 
+void append_measured(const SceneDescription& description, FlatScene& flat) {
+  for (const Material& material : description.materials) {
+    const auto* m = std::get_if<MeasuredMaterial>(&material.model);
+    if (m && (m->table < 0 || std::size_t(m->table) >= description.measured.size())) {
+      throw Error(
+          fmt::format("a material refers to measured table {}, which does not exist", m->table));
+    }
+  }
+  if (description.measured.size() > most_measured_tables) {
+    throw Error(fmt::format("{} tables of measured reflectance; at most {} fit",
+                            description.measured.size(), most_measured_tables));
+  }
+  flat.measured.reserve(description.measured.size() * measured_floats);
+  for (const MeasuredTable& table : description.measured) {
+    flat.measured.insert(flat.measured.end(), table.values.begin(), table.values.end());
+  }
+}
+
 // Finds mixes that contain themselves, which kernels would follow for ever, by their depth.
 class MixCheck {
  public:
@@ -195,6 +214,7 @@ void flatten_materials(const SceneDescription& description, FlatScene& flat) {
   MixCheck mixes(description.materials);
   for (std::size_t i = 0; i < description.materials.size(); ++i) mixes.check(int(i));
   for (const Material& m : description.materials) append_material(m, flat);
+  append_measured(description, flat);
 }
 
 }  // namespace lockstep

@@ -75,6 +75,11 @@ struct PrincipledMaterial {
   FloatInput coat_alpha{0.01f};
 };
 
+// Reflectance as a file tabulates it for all pairs of directions.
+struct MeasuredMaterial {
+  int table = 0;  // index of SceneDescription::measured
+};
+
 // Material `first` or `second` (indices of SceneDescription::materials): second for a share
 // `amount` of the light. Never refers to itself, not even through others.
 struct MixMaterial {
@@ -84,7 +89,7 @@ struct MixMaterial {
 
 using MaterialModel =
     std::variant<DiffuseMaterial, DiffuseTransmissionMaterial, ConductorMaterial, CoatedMaterial,
-                 DielectricMaterial, PrincipledMaterial, MixMaterial>;
+                 DielectricMaterial, PrincipledMaterial, MeasuredMaterial, MixMaterial>;
 
 // A model and what alters the surface that it is on.
 struct Material {

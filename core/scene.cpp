@@ -181,6 +181,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   description.shapes.clear();
   description.objects.clear();
   description.textures.clear();
+  description.measured.clear();
   s.description = std::move(description);
 
   s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));

@@ -24,6 +24,7 @@ namespace lockstep {
 //                        10 absorption
 //   Principled           0 base colour, 3 metallic, 4 alpha, 5 eta, 6 specular, 7 transmission,
 //                        8 coat, 9 coat alpha, 10 thin
+//   Measured             0 number of its table
 //   Mix                  0 first material, 1 second, 2 share of the second
 // Mixes never reach shading: each path goes on with one of their parts.
 enum class MaterialKind : std::int32_t {
@@ -34,9 +35,10 @@ enum class MaterialKind : std::int32_t {
   DiffuseTransmission,
   Dielectric,
   Principled,
+  Measured,
   Mix
 };
-inline constexpr int material_kinds = 8;
+inline constexpr int material_kinds = 9;
 inline constexpr int material_stride = 16;
 
 constexpr Feature material_feature(MaterialKind kind) {
@@ -64,6 +66,8 @@ struct MaterialTable {
   const std::int32_t* maps = nullptr;
   const TextureBinding* bindings = nullptr;
   const float* ggx_albedo = nullptr;  // core/ggx_albedo.h; none: single scattering only
+  const float* measured = nullptr;    // measured_count tables of core/measured_table.h
+  std::int32_t measured_count = 0;
 };
 
 // Rows of LightTable::rows, `light_stride` floats each:
@@ -186,9 +190,9 @@ constexpr bool needs(const SceneData& scene, Feature feature) {
 inline constexpr FeatureMask area_light_features =
     feature_set(Feature::QuadLights, Feature::TriangleLights, Feature::DiskLights,
                 Feature::SphereLights, Feature::TexturedLights);
-inline constexpr FeatureMask material_features =
-    feature_set(Feature::Diffuse, Feature::Conductor, Feature::Coated, Feature::RoughDiffuse,
-                Feature::DiffuseTransmission, Feature::Dielectric, Feature::Principled);
+inline constexpr FeatureMask material_features = feature_set(
+    Feature::Diffuse, Feature::Conductor, Feature::Coated, Feature::RoughDiffuse,
+    Feature::DiffuseTransmission, Feature::Dielectric, Feature::Principled, Feature::Measured);
 
 // Lights that no ray can hit.
 inline constexpr FeatureMask delta_light_features =

@@ -9,6 +9,7 @@
 #include "core/camera_description.h"
 #include "core/light_description.h"
 #include "core/material.h"
+#include "core/measured_table.h"
 #include "core/mesh.h"
 
 #include <cstdint>
@@ -66,6 +67,7 @@ struct RenderDefaults {
 struct SceneDescription {
   std::string name;
   std::vector<Texture> textures;
+  std::vector<MeasuredTable> measured;
   std::vector<Material> materials;
   std::vector<Shape> shapes;
   std::vector<ObjectDescription> objects;

@@ -4,6 +4,7 @@
 #include "core/bsdf.h"
 #include "core/bsdf/dielectric.h"
 #include "core/bsdf/diffuse_transmission.h"
+#include "core/bsdf/measured.h"
 #include "core/bsdf/metal.h"
 #include "core/bsdf/oren_nayar.h"
 #include "core/bsdf/principled.h"
@@ -25,12 +26,14 @@ LOCKSTEP_INLINE auto load_bsdf(const MaterialTable& table, I material) {
   }
   if constexpr (K == MaterialKind::Dielectric) return load_dielectric(table, material);
   if constexpr (K == MaterialKind::Principled) return load_principled(table, material);
+  if constexpr (K == MaterialKind::Measured) return load_measured(table, material);
 }
 
 // Models that choose between lobes by a sample of their own.
 constexpr bool has_lobes(MaterialKind kind) {
   return kind == MaterialKind::Coated || kind == MaterialKind::DiffuseTransmission ||
-         kind == MaterialKind::Dielectric || kind == MaterialKind::Principled;
+         kind == MaterialKind::Dielectric || kind == MaterialKind::Principled ||
+         kind == MaterialKind::Measured;
 }
 
 // What single scattering loses, where it is to be put back.

@@ -80,6 +80,7 @@ void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
     shade_kind<W, MaterialKind::DiffuseTransmission, F>(c);
     shade_kind<W, MaterialKind::Dielectric, F>(c);
     shade_kind<W, MaterialKind::Principled, F>(c);
+    shade_kind<W, MaterialKind::Measured, F>(c);
     if (job.log) log_shadows(*job.log, c.bounce, wave.shadows);
     clock.enter(Stage::Traversal);
     trace_occluded(scene, *job.traversal_policy, c.bounce, wave.shadows, counts);

@@ -2,6 +2,7 @@
 // way through Embree.
 #include "packets/kernel.h"
 #include "tests/t_images.h"
+#include "tests/t_measured.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -99,13 +100,24 @@ class EveryFeature : public TestWithImages {
     clear.alpha = 0.05f;
     Material dented = brushed;
     dented.normal_map = t.normals;
-    return {glass, frosted, sheet, dented, mirror, coated, plastic, clear};
+    return {glass, frosted, sheet, dented, mirror, coated, plastic, clear, MeasuredMaterial{1}};
+  }
+
+  // A black table, and one with a highlight.
+  static void add_tables(SceneDescription& d) {
+    const auto glossy = [](glm::vec3 wo, glm::vec3 wi) {
+      const float h = glm::normalize(wo + wi).z;
+      return glm::vec3(0.1f, 0.2f, 0.1f) + 0.4f * std::pow(h, 40.0f);
+    };
+    const auto black = [](glm::vec3, glm::vec3) { return glm::vec3(0.0f); };
+    d.measured = {make_measured_table(cells_of(black), "black"),
+                  make_measured_table(cells_of(glossy), "glossy")};
   }
 
   // Of the materials before: glass with metal, and that with diffuse ones.
   static void add_mixes(SceneDescription& d, const Textures& t) {
     const int n = int(d.materials.size());
-    add_material(d, MixMaterial{n - 8, n - 5, textured_number(t.fine)});
+    add_material(d, MixMaterial{n - 9, n - 6, textured_number(t.fine)});
     add_material(d, MixMaterial{n, 0, 0.4f});
   }
 
@@ -163,6 +175,7 @@ class EveryFeature : public TestWithImages {
     const Textures t = add_textures(d);
     for (const Material& m : diffuse_materials(t)) add_material(d, m);
     for (const Material& m : glossy_materials(t)) add_material(d, m);
+    add_tables(d);
     add_mixes(d, t);
     add_objects(d);
     add_instances(d);

@@ -23,6 +23,7 @@ bool has_texture(const DielectricMaterial& m) {
 bool has_texture(const PrincipledMaterial& m) {
   return any(m.base_color, m.metallic, m.alpha, m.specular, m.transmission, m.coat, m.coat_alpha);
 }
+bool has_texture(const MeasuredMaterial&) { return false; }
 bool has_texture(const MixMaterial& m) { return any(m.amount); }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "core/material.h"
+#include "core/measured_table.h"
 #include "core/pbrt/names.h"
 #include "core/pbrt/parameters.h"
 #include "core/pbrt/version.h"
 
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,6 +53,8 @@ struct Library {
   NameTable<int> named_materials;  // indices of `materials`
 
   std::vector<Texture> scene_textures;
+  std::vector<MeasuredTable> scene_measured;
+  std::map<std::string, int> measured_files;  // what has been read: indices of scene_measured
   std::vector<Material> scene_materials;
 };
 

@@ -57,9 +57,9 @@ MadeMaterial hair(const Inputs& in) {
       in.reflectance(in.set().any("color") != nullptr ? "color" : "reflectance", 0.5f)};
 }
 
-MadeMaterial measured(const Inputs& in) {
-  in.warn("measured reflectance is not supported; a diffuse grey is used");
-  in.set().ignore({"filename", "bsdffile"});
+MadeMaterial fourier(const Inputs& in) {
+  in.warn("reflectance as a Fourier series is not supported; a diffuse grey is used");
+  in.set().ignore({"bsdffile"});
   return DiffuseMaterial{};
 }
 

@@ -31,10 +31,13 @@ MadeMaterial substrate(const Inputs&);
 MadeMaterial translucent(const Inputs&);
 MadeMaterial disney(const Inputs&);
 
+// v2 and v4 (measured.cpp)
+MadeMaterial measured(const Inputs&);
+
 // Stand-ins for what the scene description cannot say (material_stand_ins.cpp)
 MadeMaterial subsurface(const Inputs&);
 MadeMaterial hair(const Inputs&);
-MadeMaterial measured(const Inputs&);
+MadeMaterial fourier(const Inputs&);
 
 // Without parameters both versions have copper.
 struct MetalIndex {

@@ -41,7 +41,7 @@ constexpr MaterialType material_types[] = {
     {"kdsubsurface", subsurface},
     {"hair", hair},
     {"measured", measured},
-    {"fourier", measured},
+    {"fourier", fourier},
     {"interface", interface},
     {"none", interface},
     {"", interface},

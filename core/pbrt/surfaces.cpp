@@ -148,6 +148,7 @@ void settle_surfaces(State& state) {
   settle_shapes(surfaces, state.scene.shapes);
   settle_instances(state, surfaces);
   state.scene.textures = std::move(state.library.scene_textures);
+  state.scene.measured = std::move(state.library.scene_measured);
   state.scene.materials = std::move(state.library.scene_materials);
 }
 

@@ -88,6 +88,7 @@ bool textured(const PrincipledMaterial& m) {
   return any_textured(m.base_color, m.metallic, m.alpha, m.specular, m.transmission, m.coat,
                       m.coat_alpha);
 }
+bool textured(const MeasuredMaterial&) { return false; }
 bool textured(const MixMaterial& m) { return any_textured(m.amount); }
 
 std::vector<MaterialCounts> count_materials(const std::vector<Material>& materials) {
@@ -98,6 +99,7 @@ std::vector<MaterialCounts> count_materials(const std::vector<Material>& materia
                                                                          {"coated diffuse"},
                                                                          {"dielectric"},
                                                                          {"principled"},
+                                                                         {"measured"},
                                                                          {"mix"}}};
   for (const Material& material : materials) {
     MaterialCounts& c = models[material.model.index()];
