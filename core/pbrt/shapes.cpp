@@ -1,6 +1,7 @@
 #include "core/pbrt/shapes.h"
 
 #include "core/pbrt/bilinear.h"
+#include "core/pbrt/curves.h"
 #include "core/pbrt/placement.h"
 #include "core/pbrt/quadrics.h"
 #include "core/ply.h"
@@ -139,6 +140,7 @@ constexpr MeshType mesh_types[] = {
     {"bilinearmesh", bilinear_mesh},
     {"loopsubdiv", loop_surface},
     {"plymesh", ply_mesh},
+    {"curve", curve},
 };
 
 std::optional<Geometry> make_quadric(const std::string& type, const ParameterSet& set,

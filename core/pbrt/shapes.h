@@ -18,7 +18,7 @@ struct ShapeContext {
   glm::dmat4 object_to_world{1.0};
   bool reverse_orientation = false;
   bool may_be_textured = false;  // (u, v) matter
-  double triangles_left = 0.0;   // that subdivision may make
+  double triangles_left = 0.0;   // that subdivision and curves may make
   // Turns a file name in the scene into a path that can be opened.
   std::function<std::string(const std::string&)> resolve;
 };

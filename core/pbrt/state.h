@@ -105,7 +105,8 @@ struct State {
   bool in_world = false;
   bool world_ended = false;
   int include_depth = 0, files_read = 0;
-  double triangles_left = 1 << 26;  // that subdivision may make
+  std::vector<Shape>* curves = nullptr;  // whose last shape more curves may join
+  double triangles_left = 1 << 26;       // that subdivision and curves may make
 };
 
 }  // namespace lockstep::pbrt

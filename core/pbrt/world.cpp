@@ -69,6 +69,27 @@ int add_surface(State& state, Surface surface) {
   return static_cast<int>(surfaces.size()) - 1;
 }
 
+// Curves come in thousands: those that follow each other on one surface become one mesh. False
+// where `shape` is the first of them.
+bool joins_curves(const State& state, std::vector<Shape>& shapes, const Shape& shape) {
+  if (state.curves != &shapes || shapes.empty()) return false;
+  Shape& last = shapes.back();
+  auto& all = std::get<TriangleMesh>(last.geometry);
+  const auto& more = std::get<TriangleMesh>(shape.geometry);
+  const size_t vertices = all.positions.size();
+  if (last.material != shape.material || vertices + more.positions.size() > 1u << 30) return false;
+  const auto append = [](auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(all.positions, more.positions);
+  append(all.normals, more.normals);
+  append(all.uvs, more.uvs);
+  for (const glm::uvec3 t : more.triangles) {
+    all.triangles.push_back(t + glm::uvec3(static_cast<unsigned>(vertices)));
+  }
+  return true;
+}
+
 }  // namespace
 
 ParameterSet with_defaults(const State& state, const Call& call, const std::string& type,
@@ -176,7 +197,7 @@ void shape(State& state, const Call& call) {
   if (!found) return;
   Shape made;
   if (auto* geometry = std::get_if<Geometry>(&*found)) made.geometry = std::move(*geometry);
-  if (type == "loopsubdiv") {
+  if (type == "loopsubdiv" || type == "curve") {
     state.triangles_left -= double(std::get<TriangleMesh>(made.geometry).triangles.size());
   }
 
@@ -194,6 +215,9 @@ void shape(State& state, const Call& call) {
     state.mesh_files.push_back(std::move(*file));
     state.file_shapes.push_back({&shapes, shapes.size(), light != nullptr ? light->power : 0.0f});
   }
+  const bool gathers = type == "curve" && !made.emission;
+  if (gathers && joins_curves(state, shapes, made)) return;
+  state.curves = gathers ? &shapes : nullptr;
   shapes.push_back(std::move(made));
 }
 
