@@ -44,7 +44,7 @@ struct Interval {
 };
 
 Interval student_interval(const MeanWithError& of, double n) {
-  const double reach = boost::math::quantile(boost::math::students_t(n - 1.0), 0.975) * of.error;
+  const double reach = student_quantile(n - 1.0, 0.025) * of.error;
   return {of.mean - reach, of.mean + reach};
 }
 
@@ -66,6 +66,10 @@ Interval bootstrap_interval(const std::vector<double>& values, const MeanWithErr
 }
 
 }  // namespace
+
+double student_quantile(double freedom, double tail) {
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
+}
 
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());

@@ -11,6 +11,9 @@ namespace lockstep {
 // order statistics (Hyndman and Fan 1996, type 7). `values` is not empty.
 double quantile(std::vector<double> values, double q);
 
+// What Student's t of so many degrees of freedom exceeds with probability `tail`.
+double student_quantile(double freedom, double tail);
+
 struct Spread {
   double median = 0.0;
   double p5 = 0.0;

@@ -8,7 +8,7 @@
 namespace lockstep {
 namespace {
 
-constexpr double kDarkest = 0.01;  // of the mean: keeps errors of black blocks finite
+constexpr double kDarkestBlock = 0.01;  // of the mean: keeps errors of black blocks finite
 
 double luminance(const float* rgb) {
   return 0.2126 * double(rgb[0]) + 0.7152 * double(rgb[1]) + 0.0722 * double(rgb[2]);
@@ -47,7 +47,7 @@ double mean_of(const std::vector<Block>& blocks) {
 
 double block_relative_rmse(const Image& reference, const Image& test) {
   const std::vector<Block> expected = blocks_of(reference), found = blocks_of(test);
-  const double least = kDarkest * mean_of(expected);
+  const double least = kDarkestBlock * mean_of(expected);
   double sum = 0.0, pixels = 0.0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const double b = expected[i].sum / expected[i].pixels;

@@ -3,12 +3,12 @@
 
 #include "core/scene.h"
 #include "core/scene_warnings.h"
+#include "experiments/compare/statistics.h"
 #include "experiments/output/machine.h"
 #include "experiments/output/progress.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>
-#include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -257,8 +257,7 @@ const StressRow& worst_row(const StressResult& result) {
 
 double reach_of_chance(int seeds, double level) {
   if (seeds < 2) return 0.0;
-  const boost::math::students_t t(double(seeds - 1));
-  return boost::math::quantile(boost::math::complement(t, 0.5 * level));
+  return student_quantile(double(seeds - 1), 0.5 * level);
 }
 
 StressVerdict judge_mean(double expected, double got, double standard_error, double reach,
