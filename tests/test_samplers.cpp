@@ -44,7 +44,7 @@ void expect_same_at_all_widths(const SamplerState& state, int pair) {
   const auto some = some_of(all.pixel.size());
   Couples few;
   for (const std::size_t i : some) few.add(all.pixel[i], all.sample[i]);
-  const Values expected = draw_batch(find_kernel(Isa::Sse4, 1), state, all, pair);
+  const Values expected = draw_batch(find_kernel(available_isas().front(), 1), state, all, pair);
   Values expected_few;
   for (const std::size_t i : some) {
     expected_few.u.push_back(expected.u[i]);
