@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "core/image_formats.h"
+#include "core/memory.h"
 
 #include <dlfcn.h>
 
@@ -20,6 +21,18 @@ namespace fs = std::filesystem;
 
 fs::path module_path() {
   return fs::read_symlink("/proc/self/exe").parent_path() / image_formats_file;
+}
+
+// What its libraries and their threads take of address space. Where they get less, their own
+// constructors crash.
+constexpr std::uint64_t module_bytes = std::uint64_t(1) << 30;
+
+void check_address_space() {
+  const bool is_loaded = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_NOLOAD) != nullptr;
+  if (is_loaded || left_address_space() >= module_bytes) return;
+  throw Error(
+      "the module for this kind of image needs 1 GiB of address space, and ulimit -v leaves less; "
+      "allow more memory, or use .exr");
 }
 
 // The module stays loaded: its libraries have threads and state of their own.
@@ -96,7 +109,7 @@ std::string name_of_format(const std::vector<unsigned char>& file) {
 
 void check_image_module() {
   const fs::path file = module_path();
-  if (fs::exists(file)) return;
+  if (fs::exists(file)) return check_address_space();
   throw Error("this kind of image needs the module " + file.string() +
               ", which is missing: put it beside the program, or use .exr");
 }

@@ -41,6 +41,16 @@ void check(RTCDevice device) {
   }
 }
 
+// Embree starts its threads with the device: where they find no memory, it calls that unknown.
+std::string why_no_device(const std::string& embree_isa) {
+  const RTCError error = rtcGetDeviceError(nullptr);
+  return "Embree cannot start for instruction set " + embree_isa +
+         (error == RTC_ERROR_UNSUPPORTED_CPU
+              ? ", which this CPU lacks; choose another --isa"
+              : " (error " + std::to_string(int(error)) +
+                    "): not enough memory or threads; give this process more");
+}
+
 bool has_environment_map(const SceneDescription& description) {
   return description.environment &&
          description.environment->mapping != Environment::Mapping::Constant;
@@ -185,7 +195,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   s.description = std::move(description);
 
   s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));
-  if (!s.device) throw Error("Embree cannot start for instruction set " + embree_isa);
+  if (!s.device) throw Error(why_no_device(embree_isa));
   rtcSetDeviceMemoryMonitorFunction(s.device.get(), EmbreeMemory::count, &s.embree_memory);
   s.scene = new_scene(s.device.get());
   tbb::parallel_invoke([&] { s.find_coincident(); },

@@ -1,7 +1,9 @@
 #include "packets/checkpoint.h"
 
 #include "core/error.h"
+#include "core/fingerprint.h"
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -9,7 +11,7 @@ namespace lockstep {
 namespace {
 
 // Raise the number when RenderState or what a sample's value is changes.
-constexpr std::string_view magic = "lockstep film 3\n";
+constexpr std::string_view magic = "lockstep film 4\n";
 
 template <class T>
 void write(std::ostream& out, const T* data, std::size_t count) {
@@ -29,6 +31,21 @@ void for_each_part(S& state, F f) {
   }
   f(&state.totals, 1);
   f(&state.wall_seconds, 1);
+}
+
+// Of all that is kept: any single word that is read as another gives another.
+std::uint64_t checksum(const RenderState& state) {
+  Fingerprint sum;
+  for_each_part(state, [&](const auto* data, std::size_t count) {
+    static_assert(sizeof *data % sizeof(std::uint32_t) == 0);
+    const auto* bytes = reinterpret_cast<const char*>(data);
+    for (std::size_t at = 0; at < count * sizeof *data; at += sizeof(std::uint32_t)) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, bytes + at, sizeof word);
+      sum.add(word);
+    }
+  });
+  return sum.value();
 }
 
 }  // namespace
@@ -51,7 +68,9 @@ bool load_checkpoint(const std::string& path, const std::string& key, RenderStat
                 "spp is one: give pilot=N); use them again, or remove it to start anew");
   }
   for_each_part(state, [&](auto* data, std::size_t count) { read(in, data, count); });
-  if (!in || in.peek() != std::char_traits<char>::eof()) {
+  std::uint64_t sum = 0;
+  read(in, &sum, 1);
+  if (!in || sum != checksum(state) || in.peek() != std::char_traits<char>::eof()) {
     throw Error(path + ": the saved film is damaged; remove it to start anew");
   }
   return true;
@@ -65,6 +84,8 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
   write(out, &key_size, 1);
   write(out, key.data(), key.size());
   for_each_part(state, [&](const auto* data, std::size_t count) { write(out, data, count); });
+  const std::uint64_t sum = checksum(state);
+  write(out, &sum, 1);
   out.close();
   std::error_code error;
   if (out) std::filesystem::rename(beside, path, error);

@@ -17,7 +17,7 @@ struct RenderState {
 
 // Restores `state`, whose films have their size already, if `path` is there and was saved under the
 // same key, which states all settings that the samples depend on. Returns false where there is no
-// such file. Throws Error where the key differs or the file is damaged.
+// such file. Throws Error where the key differs or the file is damaged, which its checksum tells.
 bool load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
 
 // Writes `state` beside `path` and renames it into place. Throws Error.

@@ -7,12 +7,14 @@
 #include "packets/layout_policy.h"
 #include "packets/ray_log.h"
 #include "packets/render.h"
+#include "packets/render_site.h"
 #include "packets/stage_clock.h"
 #include "packets/traversal_policy.h"
 #include "samplers/sampler_state.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace lockstep {
 
@@ -21,6 +23,7 @@ inline constexpr int tile_size = share_tile;  // pixels along each side
 struct PathSettings {
   int depth = 5;
   int roulette_depth = 5;
+  float clamp = std::numeric_limits<float>::infinity();  // see RenderSettings
 };
 
 // Sums over the samples of each pixel, in double: 2^24 samples of 1 would stop growing in float.
@@ -43,6 +46,7 @@ struct TileCounts {
   std::uint64_t active_lanes = 0;                         // of which carried a ray
   LayoutCount layouts[3] = {};  // the first come, of which there are no more
   StageTicks ticks;
+  std::uint64_t clamped = 0;  // samples
   std::uint64_t nonfinite = 0;
   static constexpr int kept = 8;
   BadSample bad[kept];  // the first min(nonfinite, kept)
@@ -57,7 +61,8 @@ struct TileJob {
   const SamplerState* sampler = nullptr;
   TraversalPolicy* traversal_policy = nullptr;
   LayoutPolicy* layout_policy = nullptr;
-  RayLog* log = nullptr;  // gets all rays, if set
+  RayLog* log = nullptr;       // gets all rays, if set
+  RenderSite* site = nullptr;  // is kept up to date, if set
   PathSettings path;
   FilmView film;
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <numeric>
 
 namespace lockstep {
 namespace {
@@ -39,8 +40,27 @@ void add(PassTotals& to, const PassTotals& from) {
   t.packets += f.packets;
   t.lanes += f.lanes;
   t.active_lanes += f.active_lanes;
+  t.clamped += f.clamped;
   t.nonfinite += f.nonfinite;
   to.cpu_seconds += from.cpu_seconds;
+}
+
+// Says where the thread is for as long as this lives.
+class SiteScope {
+ public:
+  explicit SiteScope(const RenderSite& site) { render_site() = site; }
+  ~SiteScope() { render_site() = {}; }
+  SiteScope(const SiteScope&) = delete;
+  SiteScope& operator=(const SiteScope&) = delete;
+};
+
+// The tile that comes at this place of an order: every place has another.
+int tile_at(TileOrder order, int place, int tiles) {
+  if (order == TileOrder::Forward) return place;
+  if (order == TileOrder::Backward) return tiles - 1 - place;
+  int step = std::max(1, int(0.618 * tiles));
+  while (std::gcd(step, tiles) != 1) ++step;
+  return int(std::int64_t(place) * step % tiles);
 }
 
 }  // namespace
@@ -62,18 +82,20 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
   int done = 0;
   std::atomic<bool> stopped = false, skipped = false;
 
-  const auto trace = [&](int column, int row) {
+  const auto trace = [&](int tile) {
+    const int column = tile % columns, row = tile / columns;
     Worker& worker = pass.workers->local();
     const double start = thread_cpu_seconds();
     TileJob job;
     job.scene = pass.scene, job.sampler = pass.sampler, job.path = pass.path;
     job.traversal_policy = &worker.traversal, job.layout_policy = &worker.layout;
-    job.log = pass.log;
+    job.log = pass.log, job.site = &render_site();
     job.film = film.view();
     job.x0 = column * tile_size, job.x1 = std::min(job.x0 + tile_size, film.width);
     job.y0 = row * tile_size, job.y1 = std::min(job.y0 + tile_size, film.height);
     job.first_sample = film.samples;
     job.samples = pass.samples;
+    const SiteScope site(pass.site);
     pass.kernel->trace_tile(job, scratch_of(worker, pass.kernel->scratch_bytes),
                             worker.totals.counts);
     worker.totals.cpu_seconds += thread_cpu_seconds() - start;
@@ -91,7 +113,7 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
               if (stopped) {
                 skipped = true;
               } else {
-                trace(column, row);
+                trace(tile_at(pass.order, row * columns + column, columns * rows));
               }
             }
           }

@@ -40,9 +40,11 @@ struct Pass {
   const SamplerState* sampler = nullptr;
   Workers* workers = nullptr;
   RayLog* log = nullptr;
+  RenderSite site;  // what is rendered, for a thread that crashes
   PathSettings path;
   std::uint32_t samples = 1;
   int threads = 1;
+  TileOrder order = TileOrder::Forward;
   // If set, called after each tile, from one thread at a time, while nobody writes to that tile.
   std::function<void(const TileJob&)> watch;
 };

@@ -49,15 +49,24 @@ inline void log_shadows(RayLog& log, int bounce, const ShadowQueue& q) {
               q.distance});
 }
 
+// For whoever must tell where a crash was.
+inline void note_site(const TileJob& job) {
+  RenderSite& site = *job.site;
+  site.x0 = job.x0, site.y0 = job.y0, site.x1 = job.x1, site.y1 = job.y1;
+  site.first_sample = job.first_sample, site.samples = job.samples;
+}
+
 // One wave: at most wave_paths paths, from camera to film.
 template <int W, FeatureMask F>
 void trace_wave(const TileJob& job, Wave& wave, TileCounts& counts) {
   const SceneData& scene = *job.scene;
   StageClock clock(counts.ticks, Stage::Shading);
+  if (job.site) note_site(job);
   begin_paths<W>(job, wave);
   generate_camera_rays<W, F>(job, wave, clock);
   ShadeContext c{&scene, &job, &wave, &clock, 0, false};
   for (c.bounce = 0; c.rays().count > 0; ++c.bounce) {
+    if (job.site) job.site->bounce = c.bounce;
     const RayKind kind = c.bounce == 0 ? RayKind::Camera : RayKind::Bounce;
     if (job.log) log_closest(*job.log, kind, c.bounce, c.rays());
     clock.enter(Stage::Traversal);

@@ -7,6 +7,7 @@
 #include "samplers/sampler.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
@@ -121,12 +122,24 @@ inline void count_nonfinite(const TileJob& job, const PathTable& paths, int i, T
   ++counts.nonfinite;
 }
 
+// Scales a sample down to the luminance that it may have at most. One of infinite luminance stays
+// as it is: it is left out, and counted as that.
+inline void clamp_sample(float most, Float4& radiance, TileCounts& counts) {
+  const float l = luminance(Vec3<float>(radiance[0], radiance[1], radiance[2]));
+  if (!(l > most && l < std::numeric_limits<float>::infinity())) return;
+  const float scale = most / l;
+  radiance *= Float4{scale, scale, scale, 1.0f};
+  ++counts.clamped;
+}
+
 // Adds the wave's paths to the film, a pixel's samples in ascending order.
 template <FeatureMask F>
 void end_paths(const TileJob& job, const PathTable& paths, TileCounts& counts) {
+  const bool clamps = job.path.clamp < std::numeric_limits<float>::infinity();
   for (int i = 0; i < paths.count; ++i) {
     Float4 radiance;
     std::memcpy(&radiance, paths.radiance + 4 * i, sizeof radiance);
+    if (clamps) clamp_sample(job.path.clamp, radiance, counts);
     if (needs<F>(*job.scene, Feature::FilterSigns)) {
       const float weight = paths.weight[i];
       radiance *= Float4{weight, weight, weight, 1.0f};

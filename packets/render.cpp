@@ -3,6 +3,7 @@
 #include "core/cpu_clock.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/memory.h"
 #include "packets/checkpoint.h"
 #include "packets/pass.h"
 #include "samplers/dimensions.h"
@@ -58,6 +59,15 @@ LaneLayout layout_of_most_paths(const TileCounts& counts) {
   return most->lanes;
 }
 
+// Before any of it is taken: sums of the image, of the pilot and of its half, and the image itself.
+void require_film_memory(const FilmDescription& film, const SamplerSpec& sampler) {
+  const int films = sampler.has_pilot() ? sampler.weight_source == WeightSource::Auto ? 3 : 2 : 1;
+  const double bytes = films * 4.0 * sizeof(double) + 3.0 * sizeof(float);
+  require_memory(double(film.width) * film.height * bytes,
+                 fmt::format("an image of {}x{} pixels", film.width, film.height),
+                 "choose a smaller --resolution");
+}
+
 class Renderer {
  public:
   Renderer(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
@@ -76,7 +86,14 @@ class Renderer {
     pass_.workers = &workers_;
     pass_.log = settings.log;
     pass_.scene = &scene.data();
-    pass_.path = {settings.depth, settings.roulette_depth};
+    pass_.path.depth = settings.depth, pass_.path.roulette_depth = settings.roulette_depth;
+    if (settings.clamp) pass_.path.clamp = *settings.clamp;
+    pass_.order = settings.tile_order;
+    title_ = fmt::format("scene {}, sampler {}, seed {}",
+                         settings.scene_name.empty() ? "without a name" : settings.scene_name,
+                         to_string(sampler), settings.seed);
+    pass_.site.render = title_.c_str();
+    pass_.site.command = settings.command.c_str();
     pass_.threads = settings.threads > 0 ? settings.threads
                                          : int(std::max(1u, std::thread::hardware_concurrency()));
     pilot_spp_ = pilot_samples(sampler, settings);
@@ -120,9 +137,7 @@ class Renderer {
 
  private:
   // False where all samples go to the pilot, which then is the image: nothing needs weights.
-  bool image_follows() const {
-    return settings_.time_seconds > 0.0 || settings_.spp > pilot_spp_;
-  }
+  bool image_follows() const { return settings_.time_seconds > 0.0 || settings_.spp > pilot_spp_; }
 
   std::uint32_t samples_done() const { return state_.pilot.samples + state_.image.samples; }
 
@@ -210,6 +225,7 @@ class Renderer {
                        scene_.fingerprint(), to_string(sampler_), film.width, film.height,
                        settings_.seed, settings_.depth, settings_.roulette_depth, pilot_spp_,
                        name(settings_.isa)) +
+           (settings_.clamp ? fmt::format(" clamp {}", *settings_.clamp) : "") +
            (is_planned(sampler_) ? fmt::format(" samples {}", settings_.spp) : "");
   }
   void restore() {
@@ -252,6 +268,7 @@ class Renderer {
     s.film_bytes = (state_.image.sums.size() + state_.pilot.sums.size()) * sizeof(double) +
                    state_.image.sums.size() / 4 * 3 * sizeof(float);
     if (counts.lanes > 0) s.lanes_active = double(counts.active_lanes) / double(counts.lanes);
+    s.clamped = counts.clamped;
     s.nonfinite = counts.nonfinite;
     s.bad_samples.assign(counts.bad,
                          counts.bad + std::min<std::uint64_t>(counts.nonfinite, TileCounts::kept));
@@ -268,6 +285,7 @@ class Renderer {
   const SamplerSpec& sampler_;
   const RenderSettings& settings_;
   const Progress& progress_;
+  std::string title_;
   double start_;    // of this run, wall clock
   double counted_;  // up to when state_.wall_seconds counts
   double weights_seconds_ = 0.0;
@@ -285,9 +303,13 @@ RenderResult render(const Scene& scene, const SamplerSpec& sampler, const Render
   if (settings.depth < 1 || settings.depth > max_depth) {
     throw UsageError(fmt::format("depth must lie in 1..{}", max_depth));
   }
+  if (settings.clamp && !(*settings.clamp > 0.0f)) {
+    throw UsageError("the clamp must be a luminance above 0");
+  }
   if (settings.log && settings.threads != 1) {
     throw UsageError("rays can be kept with one thread only");
   }
+  require_film_memory(scene.description().film, sampler);
   return Renderer(scene, sampler, settings, progress).run();
 }
 

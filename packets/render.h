@@ -7,6 +7,7 @@
 #include "packets/isa.h"
 #include "packets/lane_layout.h"
 #include "packets/stage_clock.h"
+#include "packets/tile_order.h"
 #include "packets/traversal_mode.h"
 #include "samplers/sampler_spec.h"
 
@@ -33,9 +34,15 @@ struct RenderSettings {
   // Measured and chosen while rendering where not given.
   std::optional<LaneLayout> lanes;
   std::optional<TraversalMode> traversal;
+  // If set: the luminance that a sample may have at most; brighter ones are scaled down to it. That
+  // takes away fireflies, and the light they stand for: the image is biased.
+  std::optional<float> clamp;
+  TileOrder tile_order = TileOrder::Forward;
   bool specialized = true;  // kernels without the code that the scene does not need
   Isa isa = choose_isa();
-  RayLog* log = nullptr;  // if set, gets all rays; with one thread only
+  std::string scene_name;  // for messages, as is
+  std::string command;     // that renders the image again; may be empty
+  RayLog* log = nullptr;   // if set, gets all rays; with one thread only
   // If not empty: the film is kept in this file as the render goes on, and a render that finds it
   // there continues it. Throws Error where it was made with other settings.
   std::string resume_file;
@@ -68,6 +75,7 @@ struct RenderStats {
   std::uint64_t packets = 0;
   double stage_seconds[stages] = {};  // CPU time by Stage
   double lanes_active = 1.0;  // share of packet lanes that carried a ray, over all packets traced
+  std::uint64_t clamped = 0;  // samples: see RenderSettings::clamp
   std::uint64_t nonfinite = 0;
   std::vector<BadSample> bad_samples;  // the first few of them
   int spp = 0;                         // samples per pixel that were taken
