@@ -5,7 +5,7 @@
 #include "tests/bsdf_checks.h"
 #include "tests/t_measured.h"
 
-namespace lockstep {
+namespace lockstep::test_bsdf_measured {
 namespace {
 
 const glm::vec3 tint(0.9f, 0.6f, 0.3f);
@@ -199,4 +199,4 @@ TEST(Measured, GivesTheSameBitsAtEveryWidth) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_bsdf_measured

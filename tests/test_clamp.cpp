@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace lockstep {
+namespace lockstep::test_clamp {
 namespace {
 
 RenderSettings settings_of(std::optional<float> clamp, int spp = 1) {
@@ -78,4 +78,4 @@ TEST(Clamp, OfNothingIsRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_clamp

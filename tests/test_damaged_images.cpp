@@ -10,7 +10,7 @@
 #include <iterator>
 #include <memory>
 
-namespace lockstep {
+namespace lockstep::test_damaged_images {
 namespace {
 
 class DamagedImages : public TestWithImages {
@@ -76,4 +76,4 @@ TEST_F(DamagedImages, ExtraBytesInJpegsAreNoDamage) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_damaged_images

@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace lockstep {
+namespace lockstep::test_determinism {
 namespace {
 
 constexpr const char* every_kind_of_sampler[] = {
@@ -136,4 +136,4 @@ TEST_F(StoppedRenders, AFilmWithOneWrongBitIsRefused) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_determinism

@@ -12,7 +12,7 @@
 #include <functional>
 #include <limits>
 
-namespace lockstep {
+namespace lockstep::test_measured {
 namespace {
 
 constexpr float inverse_pi = 0.318309886f;
@@ -288,4 +288,4 @@ TEST_F(MeasuredFiles, ThatScenesCannotHaveAreNamed) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_measured

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lockstep {
+namespace lockstep::test_pbrt_curves {
 namespace {
 
 constexpr double pi = 3.14159265358979323846;
@@ -208,4 +208,4 @@ TEST_F(Curves, BadOnesGiveOneLine) {
 }
 
 }  // namespace
-}  // namespace lockstep
+}  // namespace lockstep::test_pbrt_curves
