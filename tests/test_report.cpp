@@ -224,7 +224,7 @@ TEST(Report, TenSamplersOf512By512FitInto30Megabytes) {
 TEST(CommandLine, IsQuotedForAShell) {
   EXPECT_EQ(shell_line({"lockstep", "rcs:c=4,t=0.02", "a b", "it's", "", "$(x)"}),
             "lockstep rcs:c=4,t=0.02 'a b' 'it'\\''s' '' '$(x)'");
-  EXPECT_NE(own_command_line().find("test_report"), std::string::npos);
+  EXPECT_NE(own_command_line().find("test_experiments"), std::string::npos);
 }
 
 TEST(Figures, HaveScriptsDataAndPdf) {
