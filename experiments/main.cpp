@@ -2,15 +2,23 @@
 #include "core/error.h"
 #include "core/location.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/options.h"
+#include "experiments/output/activity.h"
+#include "experiments/output/crash_handler.h"
 #include "experiments/output/machine.h"
 #include "experiments/output/progress.h"
 #include "packets/render.h"
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <iostream>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace {
@@ -20,6 +28,22 @@ enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2 };
 int report(std::string message, ExitStatus status) {
   fmt::print(stderr, "lockstep: {}\n", lockstep::printable(std::move(message), ' '));
   return status;
+}
+
+// TBB names the function that gave it no thread; people want to know what to do.
+std::string explained(const std::string& message) {
+  if (!message.starts_with("pthread_create")) return message;
+  return message + "; not enough memory or processes for another thread: give it more";
+}
+
+// Done, unless what was printed has not arrived: the disk that it went to is full.
+int done() {
+  std::cout.flush();
+  const bool arrived = std::cout.good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (arrived) return kDone;
+  return report(fmt::format("the output cannot be written: {}; make room and run it again",
+                            std::strerror(errno)),
+                kFailed);
 }
 
 // Lists subcommands with the first line of their description; their own --help has the rest.
@@ -77,22 +101,31 @@ int main(int argc, char** argv) {
   lockstep::add_info_command(program, run);
   lockstep::add_scenes_command(program, run);
   lockstep::add_samplers_command(program, run);
+  lockstep::refuse_empty_values(program);
+  lockstep::catch_crashes();
   try {
     program.parse(argc, argv);
     lockstep::catch_interrupts();
     run();
-    return kDone;
+    return done();
   } catch (const CLI::RequiredError& error) {
     const bool unknown = argc > 1 && argv[1][0] != '-' && program.get_subcommands().empty();
     const std::string what =
         unknown ? fmt::format("unknown subcommand '{}'", argv[1]) : std::string(error.what());
     return report(fmt::format("{}; {}", what, advice(program)), kWrongUsage);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
+    if (error.get_exit_code() == 0) {  // --help, --version
+      program.exit(error);
+      return done();
+    }
     return report(fmt::format("{}; {}", error.what(), advice(program)), kWrongUsage);
   } catch (const lockstep::UsageError& error) {
     return report(fmt::format("{}; {}", error.what(), advice(program)), kWrongUsage);
+  } catch (const std::bad_alloc&) {
+    return report(lockstep::out_of_memory_text(), kFailed);
+  } catch (const std::length_error&) {  // so large that no allocation was tried
+    return report(lockstep::out_of_memory_text(), kFailed);
   } catch (const std::exception& error) {
-    return report(error.what(), kFailed);
+    return report(explained(error.what()), kFailed);
   }
 }

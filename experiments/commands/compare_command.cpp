@@ -165,7 +165,7 @@ void add_what(CLI::App& command, CompareOptions& options) {
       ->capture_default_str();
   command.add_option("--seeds", options.seeds, "Renders of each kind, with seeds 0, 1, ...")
       ->type_name("N")
-      ->check(number_between(1, 10000))
+      ->check(whole_number_between(1, 10000))
       ->capture_default_str();
   command
       .add_option("--time-budgets", options.budgets,
@@ -189,7 +189,7 @@ void add_reference(CLI::App& command, CompareOptions& options) {
                   "Samples per pixel of the rendered reference (default: 1024 or\n"
                   "100 times the largest of --spp, whichever is more)")
       ->type_name("N")
-      ->check(number_between(2, 1 << 24));
+      ->check(whole_number_between(2, 1 << 24));
   command
       .add_option("--reference-dir", options.reference_folder,
                   "Folder in which rendered references are kept and found again\n"
@@ -212,7 +212,7 @@ void add_course(CLI::App& command, CompareOptions& options) {
       .add_option("--timing-repeats", options.timing_repeats,
                   "At most so often for each sample count (default: half of --seeds)")
       ->type_name("N")
-      ->check(number_between(0, 10000));
+      ->check(whole_number_between(0, 10000));
   command.add_flag("--quiet", options.quiet, "No progress; results, warnings and errors only");
 }
 

@@ -5,6 +5,7 @@
 #include "experiments/compare/summary.h"
 #include "experiments/output/output_file.h"
 #include "experiments/output/progress.h"
+#include "experiments/output/render_command.h"
 #include "experiments/report/figures.h"
 #include "experiments/report/report.h"
 
@@ -18,18 +19,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// How many samples were not finite, and where the first was; summary.json has more of them.
+void warn_of_nonfinite(const CompareSettings& settings, const SceneComparison& scene) {
+  std::uint64_t nonfinite = 0;
+  const Measurement* first = nullptr;
+  for (const Measurement& run : scene.runs) {
+    nonfinite += run.nonfinite;
+    if (!first && !run.bad_samples.empty()) first = &run;
+  }
+  if (nonfinite == 0) return;
+  fmt::print(stderr, "lockstep: warning: {}: {} samples were not finite and were left out\n",
+             scene.scene, nonfinite);
+  if (first)
+    fmt::print(stderr, "{}",
+               nonfinite_text(first->bad_samples.front(), first->seed,
+                              command_of(scene, settings, *first)));
+}
+
 // A result that is worth less than it looks is pointed out where the user will see it.
 void warn(const Comparison& comparison) {
   for (const SceneComparison& scene : comparison.scenes) {
     for (const std::string& warning : scene.warnings) {
       fmt::print(stderr, "lockstep: warning: {}\n", warning);
     }
-    std::uint64_t nonfinite = 0;
-    for (const Measurement& run : scene.runs) nonfinite += run.nonfinite;
-    if (nonfinite > 0) {
-      fmt::print(stderr, "lockstep: warning: {}: {} samples were not finite and were left out\n",
-                 scene.scene, nonfinite);
-    }
+    warn_of_nonfinite(comparison.settings, scene);
   }
 }
 

@@ -108,7 +108,7 @@ void add_demo_command(CLI::App& program, RunCommand& run) {
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads; 0 means one for each processor")
       ->type_name("N")
-      ->check(number_between(0, 4096))
+      ->check(whole_number_between(0, 4096))
       ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "No progress; results, warnings and errors only");
   command->callback([options, &run] { run = [options] { run_demo(*options); }; });

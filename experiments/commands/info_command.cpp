@@ -1,5 +1,6 @@
 // lockstep info: what a scene file holds, and what of it was not understood.
 #include "experiments/commands/commands.h"
+#include "experiments/output/activity.h"
 #include "experiments/output/machine.h"
 #include "experiments/scenes/scene_report.h"
 
@@ -17,6 +18,7 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
+  const Activity reading("reading the scene " + options.scene);
   const SceneReport report = report_scene(options.scene);
   if (!options.json) {
     fmt::print("{}", report_text(report));

@@ -4,6 +4,7 @@
 #include "experiments/metrics/block_error.h"
 #include "experiments/metrics/error_spectrum.h"
 #include "experiments/metrics/metrics.h"
+#include "experiments/output/activity.h"
 #include "experiments/output/display_image.h"
 #include "experiments/output/output_file.h"
 
@@ -91,6 +92,7 @@ nlohmann::ordered_json spectrum_json(const ErrorSpectrum& spectrum) {
 }
 
 void run_metrics(const MetricsOptions& options) {
+  const Activity measuring(fmt::format("measuring {} against {}", options.test, options.reference));
   const Image reference = read_image(options.reference);
   const Image test = read_image(options.test);
   if (!options.maps.empty()) make_output_directory(options.maps);

@@ -98,6 +98,28 @@ CLI::Validator number_between(double low, double high) {
       "");
 }
 
+CLI::Validator whole_number_between(std::int64_t low, std::int64_t high) {
+  return CLI::Validator(
+      [low, high](std::string& text) {
+        std::int64_t value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool whole = error == std::errc() && end == text.data() + text.size();
+        if (whole && value >= low && value <= high) return std::string();
+        return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
+      },
+      "");
+}
+
+void refuse_empty_values(CLI::App& program) {
+  const CLI::Validator not_empty(
+      [](std::string& text) { return text.empty() ? "the value is empty" : std::string(); }, "");
+  for (CLI::App* command : program.get_subcommands({})) {
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() > 0) option->check(not_empty);
+    }
+  }
+}
+
 void add_renderer_options(CLI::App& command, RendererOptions& options) {
   add_scene_options(command, options);
   const auto add = [&](const char* flag, auto& value, const char* type, const char* description) {
@@ -105,14 +127,18 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
   };
   add("--depth", options.depth, "N",
       "Surface interactions that are lit; 1 is direct light only\n(default: the scene's)")
-      ->check(number_between(1, 1000));
+      ->check(whole_number_between(1, 1000));
   add("--roulette-depth", options.roulette_depth, "N",
       "Interactions after which Russian roulette may end a path")
-      ->check(number_between(1, 1000))
+      ->check(whole_number_between(1, 1000))
       ->capture_default_str();
+  add("--clamp", options.clamp, "RADIANCE",
+      "Scale brighter samples down to this luminance. No fireflies, but a\n"
+      "biased image that lacks their light, and is labelled so (default: off)")
+      ->check(number_between(1e-6, 1e9));
   add("--resolution", options.resolution, "WxH", "Image size in pixels (default: the scene's)");
   add("--threads", options.threads, "N", "Threads; 0 means one for each processor")
-      ->check(number_between(0, 4096))
+      ->check(whole_number_between(0, 4096))
       ->capture_default_str();
   add("--width", options.width, "LANES",
       "SIMD lanes: 1, 4, 8, 16, or auto: the fastest for the instruction set")
@@ -145,6 +171,7 @@ RenderSettings render_settings(const RendererOptions& options) {
   RenderSettings settings;
   settings.isa = choose_isa(options.isa);
   settings.roulette_depth = options.roulette_depth;
+  settings.clamp = options.clamp;
   settings.threads = options.threads;
   settings.width = options.width == "auto" ? 0 : std::stoi(options.width);
   settings.traversal = parse_traversal(options.traversal);

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <glm/vec2.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@ namespace lockstep {
 struct RendererOptions {
   std::optional<int> depth;
   int roulette_depth = 5;
+  std::optional<float> clamp;
   std::string resolution;
   int threads = 0;
   std::string width = "auto";
@@ -33,6 +35,12 @@ struct RendererOptions {
 
 // Accepts numbers from `low` to `high`; help shows the option's own words alone.
 CLI::Validator number_between(double low, double high);
+
+// The same for whole numbers.
+CLI::Validator whole_number_between(std::int64_t low, std::int64_t high);
+
+// Makes all options of all subcommands that take a value refuse an empty one.
+void refuse_empty_values(CLI::App& program);
 
 void add_renderer_options(CLI::App& command, RendererOptions& options);
 

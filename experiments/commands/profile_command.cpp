@@ -2,6 +2,7 @@
 #include "core/error.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/options.h"
+#include "experiments/output/activity.h"
 #include "experiments/output/output_file.h"
 #include "experiments/output/progress.h"
 #include "experiments/profile/profile.h"
@@ -91,6 +92,7 @@ std::string in_directory(const ProfileOptions& options, const char* file) {
 }
 
 void run_profile_command(const ProfileOptions& options) {
+  if (!options.renderer.resolution.empty()) parse_resolution(options.renderer.resolution);
   ProfileSettings settings;
   settings.scene = options.scene;
   settings.sampler = profiled_sampler(options);
@@ -105,10 +107,12 @@ void run_profile_command(const ProfileOptions& options) {
   const SceneOverrides overrides = scene_overrides(options.renderer);
   make_output_directory(options.directory);
 
+  const Activity profiling("the profile of " + options.scene);
   SceneDescription description = read_described(options.scene, options.renderer, overrides);
   settings.render.depth = options.renderer.depth.value_or(description.defaults.depth);
   settings.render.spp = options.spp;
   settings.render.seed = options.seed;
+  settings.overrides = override_metadata(overrides);
   const Scene scene(std::move(description), embree_isa(settings.render.isa));
   ProgressMeter meter(options.quiet);
   const Profile profile = run_profile(scene, settings, [&](double share, const std::string& label) {
@@ -154,25 +158,25 @@ void add_options(CLI::App& command, ProfileOptions& options) {
       ->capture_default_str();
   command.add_option("--spp", options.spp, "Samples per pixel")
       ->type_name("N")
-      ->check(number_between(1, 4096))
+      ->check(whole_number_between(1, 4096))
       ->capture_default_str();
   command.add_option("--repeats", options.repeats, "Times that each is measured; medians count")
       ->type_name("N")
-      ->check(number_between(1, 1000))
+      ->check(whole_number_between(1, 1000))
       ->capture_default_str();
   command
       .add_option("--reference-spp", options.reference_spp,
                   "Samples per pixel of the image that errors are measured against\n"
                   "(default: 16 times --spp, at least 256); 0: measure no errors")
       ->type_name("N")
-      ->check(number_between(0, 1 << 20));
+      ->check(whole_number_between(0, 1 << 20));
   command.add_option("--seeds", options.seeds, "Renders that errors are means of")
       ->type_name("N")
-      ->check(number_between(1, 1000))
+      ->check(whole_number_between(1, 1000))
       ->capture_default_str();
   command.add_option("--seed", options.seed, "Seed")
       ->type_name("N")
-      ->check(number_between(0, 4294967295.0))
+      ->check(whole_number_between(0, 4294967295))
       ->capture_default_str();
   command.add_flag("--quiet", options.quiet, "No progress; results, warnings and errors only");
   add_renderer_options(command, options.renderer);

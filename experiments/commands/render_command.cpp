@@ -1,7 +1,10 @@
 // lockstep render: one image of one scene.
+#include "experiments/output/render_command.h"
 #include "core/error.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/options.h"
+#include "experiments/output/activity.h"
+#include "experiments/output/command_line.h"
 #include "experiments/output/output_file.h"
 #include "experiments/output/progress.h"
 #include "experiments/output/render_metadata.h"
@@ -46,23 +49,26 @@ void check_outputs(const RenderOptions& options, const SamplerSpec& sampler) {
   check_writable_image(options.weights);
 }
 
-void report_nonfinite(const RenderStats& stats, std::uint32_t seed) {
+void report_nonfinite(const RenderStats& stats, const RenderSettings& settings) {
   if (stats.nonfinite == 0) return;
   for (const BadSample& bad : stats.bad_samples) {
-    fmt::print(stderr, "lockstep: warning: not finite: pixel ({}, {}), sample {}, seed {}\n", bad.x,
-               bad.y, bad.sample, seed);
+    fmt::print(stderr, "{}", nonfinite_text(bad, settings.seed, settings.command));
   }
   fmt::print(stderr,
              "lockstep: warning: {} samples were not finite and were left out of the image\n",
              stats.nonfinite);
 }
 
-void report_done(const RenderOptions& options, const RenderStats& stats) {
+void report_done(const RenderOptions& options, const RenderSettings& settings,
+                 const RenderStats& stats) {
   const double rate =
       stats.cpu_seconds > 0.0 ? 1e-6 * double(stats.paths) / stats.cpu_seconds : 0.0;
   fmt::print(
       "{}: {} spp in {:.3g} s, {:.3g} s of CPU time on {} threads, {:.3g} Mpaths per CPU s\n",
       options.output, stats.spp, stats.wall_seconds, stats.cpu_seconds, stats.threads, rate);
+  if (settings.clamp) {
+    fmt::print("  {}: {} of {} samples\n", clamp_text(*settings.clamp), stats.clamped, stats.paths);
+  }
 }
 
 RenderSettings settings_for(const RenderOptions& options, RenderSettings settings,
@@ -71,6 +77,8 @@ RenderSettings settings_for(const RenderOptions& options, RenderSettings setting
   settings.depth = options.renderer.depth.value_or(defaults.depth);
   settings.spp = options.spp.value_or(defaults.spp);
   settings.time_seconds = options.time.value_or(0.0);
+  settings.scene_name = options.scene;
+  settings.command = own_command_line();
   if (options.resume) settings.resume_file = options.output + ".state";
   return settings;
 }
@@ -106,6 +114,11 @@ std::unique_ptr<TevDisplay> make_display(const RenderOptions& options,
   return display;
 }
 
+Scene read_built(const RenderOptions& options, const SceneOverrides& overrides, Isa isa) {
+  const Activity reading("reading the scene " + options.scene);
+  return Scene(read_described(options.scene, options.renderer, overrides), embree_isa(isa));
+}
+
 void run_render(const RenderOptions& options) {
   if (!options.renderer.resolution.empty()) parse_resolution(options.renderer.resolution);
   const SamplerSpec sampler = parse_sampler(options.sampler);
@@ -115,8 +128,7 @@ void run_render(const RenderOptions& options) {
   std::optional<TevAddress> address;
   if (!options.display.empty()) address = parse_tev_address(options.display);
 
-  const Scene scene(read_described(options.scene, options.renderer, overrides),
-                    embree_isa(settings.isa));
+  const Scene scene = read_built(options, overrides, settings.isa);
   settings = settings_for(options, settings, scene.description().defaults);
   const std::unique_ptr<TevDisplay> display = make_display(options, address, scene, settings);
   ProgressMeter meter(options.quiet);
@@ -124,12 +136,13 @@ void run_render(const RenderOptions& options) {
     meter.show(fraction, options.output);
     return !interrupted();
   };
+  const Activity rendering("rendering " + options.output);
   const RenderResult result = render(scene, sampler, settings, show);
   meter.clear();
   if (display) display->update(0, 0, result.image);
-  report_nonfinite(result.stats, settings.seed);
+  report_nonfinite(result.stats, settings);
   write_outputs(options, overrides, scene, sampler, settings, result);
-  if (!options.quiet) report_done(options, result.stats);
+  if (!options.quiet) report_done(options, settings, result.stats);
 }
 
 void add_options(CLI::App& command, RenderOptions& options) {
@@ -148,7 +161,7 @@ void add_options(CLI::App& command, RenderOptions& options) {
       ->capture_default_str();
   CLI::Option* spp = command.add_option("--spp", options.spp,
                                         "Samples per pixel, pilot included (default: the scene's)");
-  spp->type_name("N")->check(number_between(1, 1 << 24));
+  spp->type_name("N")->check(whole_number_between(1, 1 << 24));
   command
       .add_option("--time", options.time,
                   "Render for this many seconds of wall time instead of a number\nof samples")
@@ -158,7 +171,7 @@ void add_options(CLI::App& command, RenderOptions& options) {
   command
       .add_option("--seed", options.seed, "Seed; the same settings and seed give the same image")
       ->type_name("N")
-      ->check(number_between(0, 4294967295.0))
+      ->check(whole_number_between(0, 4294967295))
       ->capture_default_str();
   command.add_option("--stats", options.stats, "Write what the render cost, as JSON")
       ->type_name("FILE");

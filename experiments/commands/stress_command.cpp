@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 namespace lockstep {
@@ -49,15 +48,13 @@ StressPlan plan_of(const StressOptions& options) {
 std::vector<StressResult> run_all(const std::vector<StressCase>& cases, const StressPlan& plan,
                                   const StressOptions& options) {
   const std::string csv = in_folder(options, "stress.csv");
-  std::ofstream file(csv, std::ios::binary);
-  file << stress_csv_header() << std::flush;
-  if (!file) throw Error(fmt::format("{}: cannot be written; is the disk full?", csv));
+  write_text_file(csv, stress_csv_header());
+  AppendFile file(csv);
   ProgressMeter meter(options.quiet);
   auto results = run_stress(cases, plan, [&](const StressResult& done, double share) {
-    file << stress_csv_rows(done) << std::flush;
+    file.append(stress_csv_rows(done));
     meter.show(share, done.tested.name);
   });
-  file.close();
   std::string text = stress_csv_header();
   for (const StressResult& result : results) text += stress_csv_rows(result);
   write_text_file(csv, text);
@@ -103,11 +100,11 @@ void add_options(CLI::App& command, StressOptions& options) {
       .add_option("--seeds", options.seeds,
                   "Renders per case, width and sampler (default: 32,\nquick 16)")
       ->type_name("N")
-      ->check(number_between(2, 10000));
+      ->check(whole_number_between(2, 10000));
   command
       .add_option("--threads", options.threads, "Cases at a time; 0 means one for each processor")
       ->type_name("N")
-      ->check(number_between(0, 4096))
+      ->check(whole_number_between(0, 4096))
       ->capture_default_str();
   command.add_flag("--quiet", options.quiet, "No progress; results, warnings and errors only");
 }

@@ -5,7 +5,9 @@
 #include "experiments/compare/compare_phase.h"
 #include "experiments/compare/reference.h"
 #include "experiments/metrics/metrics.h"
+#include "experiments/output/activity.h"
 #include "experiments/output/machine.h"
+#include "experiments/output/render_metadata.h"
 
 #include <fmt/format.h>
 
@@ -78,6 +80,7 @@ std::string unique_label(const CompareSettings& settings, const std::string& sce
 }
 
 SceneDescription read_for(const CompareSettings& settings, const std::string& scene) {
+  const Activity reading("reading the scene " + scene);
   SceneDescription description = read_scene(scene, settings.overrides);
   if (settings.resolution) {
     description.film.width = settings.resolution->x;
@@ -87,7 +90,7 @@ SceneDescription read_for(const CompareSettings& settings, const std::string& sc
 }
 
 SceneComparison describe(const Scene& scene, int depth, const std::string& name,
-                         const std::string& label) {
+                         const std::string& label, std::optional<float> clamp) {
   const SceneDescription& description = scene.description();
   SceneComparison result;
   result.scene = name;
@@ -99,6 +102,8 @@ SceneComparison describe(const Scene& scene, int depth, const std::string& name,
   result.features = feature_names(scene.features());
   result.left_out = feature_names(all_features & ~scene.features());
   result.warnings = description.warnings;
+  if (clamp)
+    result.warnings.push_back(fmt::format("{}: all renders are {}", name, clamp_text(*clamp)));
   return result;
 }
 
@@ -181,8 +186,8 @@ struct Run {
 void compare_at(Run& run, const Scene& scene, const std::string& name, int depth, double begin,
                 double end) {
   const CompareSettings& settings = run.settings;
-  run.comparison.scenes.push_back(
-      describe(scene, depth, name, unique_label(settings, name, depth, run.labels)));
+  run.comparison.scenes.push_back(describe(
+      scene, depth, name, unique_label(settings, name, depth, run.labels), settings.render.clamp));
   SceneComparison& result = run.comparison.scenes.back();
   RenderSettings render_settings = settings.render;
   render_settings.depth = depth;
@@ -198,6 +203,7 @@ void compare_at(Run& run, const Scene& scene, const std::string& name, int depth
 
 void compare_scene(Run& run, std::size_t index, double done) {
   const std::string& name = run.settings.scenes[index];
+  const Activity comparing("comparing renders of " + name);
   const Scene scene(read_for(run.settings, name), embree_isa(run.settings.render.isa));
   const std::vector<int> depths = depths_of(run.settings, scene.description());
   const double share = run.costs[index] / run.all_costs() / double(depths.size());

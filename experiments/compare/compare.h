@@ -64,12 +64,20 @@ struct Measurement {
   double mean_weight = 0.0;
   LaneLayout lanes;
   double lanes_active = 0.0;
+  std::uint64_t clamped = 0;  // samples
   std::uint64_t nonfinite = 0;
+  std::vector<BadSample> bad_samples;  // the first of those that were not finite
   std::vector<double> errors;
   int packet_width = 0;  // SIMD lanes
   int threads = 0;
   bool has_weights = false;  // the sampler made a map
 };
+
+struct SceneComparison;
+
+// The command that renders it again.
+std::string command_of(const SceneComparison& scene, const CompareSettings& settings,
+                       const Measurement& run);
 
 // A render that was repeated for its time alone.
 struct TimingRepeat {

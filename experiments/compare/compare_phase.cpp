@@ -4,8 +4,10 @@
 #include "experiments/compare/equal_time.h"
 #include "experiments/compare/reference.h"
 #include "experiments/metrics/metrics.h"
+#include "experiments/output/activity.h"
 #include "experiments/output/machine.h"
 #include "experiments/output/preview.h"
+#include "experiments/output/render_command.h"
 #include "experiments/output/render_metadata.h"
 
 #include <fmt/format.h>
@@ -36,12 +38,13 @@ std::string conditions_of(const Phase& phase) {
                                            : int(std::max(1u, std::thread::hardware_concurrency()));
   return fmt::format(
       "scene {:016x} at {}x{}, roulette from {}, {}, width {}, lanes {}, traversal {}, {} kernels, "
-      "{} threads of {}, reference {:016x}, version {}",
+      "{} threads of {}, {}reference {:016x}, version {}",
       phase.scene.fingerprint(), phase.result.width, phase.result.height, settings.roulette_depth,
       name(settings.isa), settings.width > 0 ? std::to_string(settings.width) : "auto",
       settings.lanes ? to_string(*settings.lanes) : "auto",
       settings.traversal ? to_string(*settings.traversal) : "auto",
       settings.specialized ? "special" : "general", threads, cpu_name(),
+      settings.clamp ? fmt::format("clamped at {}, ", *settings.clamp) : "",
       content_fingerprint(phase.result.reference.image), version());
 }
 
@@ -146,18 +149,29 @@ void restore(Phase& phase) {
   }
 }
 
+// Gives messages about the next render the command that makes it again.
+void name_render(Phase& phase, const SamplerSpec& sampler) {
+  RenderSettings& settings = phase.render_settings;
+  settings.scene_name = phase.result.scene;
+  settings.command =
+      render_command(phase.result.scene, sampler, settings, phase.result.width, phase.result.height,
+                     override_metadata(phase.settings.overrides));
+}
+
 // Renders in full, whatever `progress` says: a stop waits for the end of the render. Returns
 // whether one was asked for.
 bool render_whole(Phase& phase, int sampler, const std::string& what, double work_before,
                   RenderResult& result) {
   const RenderSettings& settings = phase.render_settings;
   bool stop = false;
+  const Activity rendering("rendering " + phase.result.scene);
   const std::string label = fmt::format("{}: {} at {} spp, {}", phase.result.label,
                                         to_string(sampler_of(phase, sampler)), settings.spp, what);
   const auto show = [&](double fraction) {
     stop |= !phase.progress(work_before + fraction * settings.spp, label);
     return true;
   };
+  name_render(phase, sampler_of(phase, sampler));
   result = render(phase.scene, sampler_of(phase, sampler), settings, show);
   return stop;
 }
@@ -174,7 +188,9 @@ Measurement measurement_of(const Phase& phase, int sampler, const RenderResult& 
   run.mean_weight = stats.mean_weight;
   run.lanes = stats.lanes;
   run.lanes_active = stats.lanes_active;
+  run.clamped = stats.clamped;
   run.nonfinite = stats.nonfinite;
+  run.bad_samples = stats.bad_samples;
   run.errors = evaluate(*phase.reference, render.image).values;
   run.packet_width = stats.width;
   run.threads = stats.threads;
@@ -189,6 +205,7 @@ void measure(Phase& phase, int sampler, double work_before) {
       fmt::format("seed {} of {}", phase.render_settings.seed + 1, phase.settings.seeds);
   RenderResult render;
   const bool stop = render_whole(phase, sampler, what, work_before, render);
+  const Activity measuring("measuring the errors of a render of " + phase.result.scene);
   const MeasuredRun measured{measurement_of(phase, sampler, render),
                              error_spectrum(phase.result.reference.image, render.image)};
   if (measured.run.seed == 0) keep_images(phase, sampler, render);
@@ -206,10 +223,10 @@ bool all_done(const Phase& phase) {
 
 // First renders touch memory and code for the first time: they are made and thrown away.
 void warm_up(Phase& phase, double work) {
-  RenderSettings settings = phase.render_settings;
-  settings.spp = std::min(4, phase.settings.rungs.front());
+  phase.render_settings.spp = std::min(4, phase.settings.rungs.front());
   for (const SamplerSpec& sampler : phase.settings.samplers) {
-    render(phase.scene, sampler, settings,
+    name_render(phase, sampler);
+    render(phase.scene, sampler, phase.render_settings,
            [&](double) { return phase.progress(work, phase.result.label + ": warming up"); });
   }
 }
@@ -293,6 +310,7 @@ void repeat_unsteady(Phase& phase, double work) {
 }
 
 void prepare_reference(Phase& phase, double work) {
+  const Activity preparing("the reference of " + phase.result.scene);
   const auto show = [&](double fraction) {
     return phase.progress(fraction * work, phase.result.label + ": reference");
   };
@@ -307,6 +325,14 @@ void prepare_reference(Phase& phase, double work) {
 }
 
 }  // namespace
+
+std::string command_of(const SceneComparison& scene, const CompareSettings& settings,
+                       const Measurement& run) {
+  RenderSettings render = settings.render;
+  render.seed = run.seed, render.spp = run.spp, render.depth = scene.depth;
+  return render_command(scene.scene, settings.samplers[std::size_t(run.sampler)], render,
+                        scene.width, scene.height, override_metadata(settings.overrides));
+}
 
 double work_per_seed(const CompareSettings& settings) {
   double work = 0.0;

@@ -21,7 +21,8 @@ double number(const Json& json) { return json.is_null() ? std::nan("") : json.ge
 
 Json run_json(const MeasuredRun& measured) {
   const Measurement& run = measured.run;
-  Json errors = Json::object(), rings = Json::array();
+  Json errors = Json::object(), rings = Json::array(), bad = Json::array();
+  for (const BadSample& b : run.bad_samples) bad.push_back({b.x, b.y, b.sample});
   for (std::size_t m = 0; m < metrics().size(); ++m) {
     errors[std::string(metrics()[m].name)] = run.errors[m];
   }
@@ -36,7 +37,9 @@ Json run_json(const MeasuredRun& measured) {
           {"mean_weight", run.mean_weight},
           {"lanes", to_string(run.lanes)},
           {"lanes_active", run.lanes_active},
+          {"clamped", run.clamped},
           {"nonfinite", run.nonfinite},
+          {"nonfinite_samples", bad},
           {"width", run.packet_width},
           {"threads", run.threads},
           {"weights", run.has_weights},
@@ -55,7 +58,11 @@ MeasuredRun parse_run(const Json& json) {
   run.mean_weight = number(json.at("mean_weight"));
   run.lanes = parse_lane_layout(json.at("lanes").get<std::string>());
   run.lanes_active = number(json.at("lanes_active"));
+  run.clamped = json.at("clamped");
   run.nonfinite = json.at("nonfinite");
+  for (const Json& bad : json.at("nonfinite_samples")) {
+    run.bad_samples.push_back({bad.at(0), bad.at(1), bad.at(2)});
+  }
   run.packet_width = json.at("width");
   run.threads = json.at("threads");
   run.has_weights = json.at("weights");

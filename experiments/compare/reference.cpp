@@ -5,6 +5,7 @@
 #include "experiments/metrics/metrics.h"
 #include "experiments/output/machine.h"
 #include "experiments/output/output_file.h"
+#include "experiments/output/render_command.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr int kFewestSamples = 1024;
 constexpr int kSamplesPerRungSample = 100;
 constexpr std::uint32_t kHalfSeeds[2] = {0x5eed'0001u, 0x5eed'0002u};  // no run uses these
-constexpr double kDarkest = 0.01;                                      // as in relMSE
+constexpr double kDarkestSquare = 0.01;                                // as in relMSE
 
 // Everything the image depends on, in one line; a scene counts with all its numbers.
 std::string reference_key(const CompareSettings& settings, const SceneComparison& comparison,
@@ -52,7 +53,7 @@ std::pair<Image, double> average(const Image& a, const Image& b) {
     mean.pixels[i] = 0.5f * (a.pixels[i] + b.pixels[i]);
     const double d = double(a.pixels[i]) - double(b.pixels[i]);
     const double m = mean.pixels[i];
-    sum += 0.25 * d * d / (m * m + kDarkest);
+    sum += 0.25 * d * d / (m * m + kDarkestSquare);
   }
   return {std::move(mean), sum / double(mean.pixels.size())};
 }
@@ -173,6 +174,7 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
   }
 
   render_settings.spp = reference.spp / 2;
+  render_settings.clamp.reset();  // the truth is not biased
   Image halves[2];
   const auto state_file = [&](int half) {
     return fmt::format("{}.half{}.state", reference.file, half);
@@ -180,8 +182,13 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
   for (int half = 0; half < 2; ++half) {
     render_settings.seed = kHalfSeeds[half];
     render_settings.resume_file = state_file(half);
+    const SamplerSpec owen = parse_sampler("owen");
+    render_settings.scene_name = comparison.scene;
+    render_settings.command =
+        render_command(comparison.scene, owen, render_settings, comparison.width, comparison.height,
+                       override_metadata(settings.overrides));
     const auto show = [&](double f) { return !progress || progress(0.5 * (half + f)); };
-    halves[half] = render(scene, parse_sampler("owen"), render_settings, show).image;
+    halves[half] = render(scene, owen, render_settings, show).image;
   }
   auto [image, relmse] = average(halves[0], halves[1]);
   reference.image = std::move(image);

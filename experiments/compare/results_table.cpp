@@ -1,5 +1,6 @@
 #include "experiments/compare/summary.h"
 #include "experiments/metrics/metrics.h"
+#include "experiments/output/render_metadata.h"
 
 #include <fmt/format.h>
 
@@ -155,6 +156,9 @@ std::string results_table(const Json& summary) {
   if (!summary["complete"].get<bool>()) {
     text += "\nStopped before all seeds were rendered: what follows was measured until then.\n";
   }
+  const Json clamp = summary.value("clamp", Json());
+  if (clamp.is_number())
+    text += fmt::format("\nAll renders are {}.\n", clamp_text(clamp.get<float>()));
   for (const Json& scene : summary["scenes"]) {
     text += scene_header(scene);
     const Json& budgets = scene["equal_time"]["budgets"];

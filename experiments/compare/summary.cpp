@@ -6,6 +6,7 @@
 #include "experiments/metrics/metrics.h"
 #include "experiments/output/command_line.h"
 #include "experiments/output/machine.h"
+#include "experiments/output/render_command.h"
 #include "experiments/output/render_metadata.h"
 
 #include <fmt/format.h>
@@ -86,9 +87,19 @@ Json rung_json(const SceneComparison& scene, const CompareSettings& settings, in
       {"mean_weight", median_of(runs, [](const Measurement& r) { return r.mean_weight; })},
       {"lanes", to_string(runs.front()->lanes)},
       {"lanes_active", median_of(runs, [](const Measurement& r) { return r.lanes_active; })}};
-  std::uint64_t nonfinite = 0;
-  for (const Measurement* run : runs) nonfinite += run->nonfinite;
+  std::uint64_t clamped = 0, nonfinite = 0;
+  for (const Measurement* run : runs) clamped += run->clamped, nonfinite += run->nonfinite;
+  json["clamped"] = clamped;
   json["nonfinite"] = nonfinite;
+  json["nonfinite_samples"] = Json::array();
+  for (const Measurement* run : runs) {
+    for (const BadSample& bad : run->bad_samples) {
+      json["nonfinite_samples"].push_back({{"pixel", {bad.x, bad.y}},
+                                           {"sample", bad.sample},
+                                           {"seed", run->seed},
+                                           {"command", command_of(scene, settings, *run)}});
+    }
+  }
   json["cpu_seconds"] = timing_json(rung, settings.timing_spread);
   json["wall_seconds"] =
       spread_json(values_of(runs, [](const Measurement& run) { return run.wall_seconds; }));
@@ -173,26 +184,6 @@ Json reference_json(const SceneComparison& scene) {
   return json;
 }
 
-// The command that renders what a scene's images show, without sampler, samples, seed and output.
-std::string render_command(const CompareSettings& settings, const SceneComparison& scene) {
-  std::vector<std::string> line = {"lockstep", "render", scene.scene};
-  const auto add = [&](const char* flag, std::string value) {
-    line.insert(line.end(), {flag, std::move(value)});
-  };
-  add("--depth", std::to_string(scene.depth));
-  add("--roulette-depth", std::to_string(settings.render.roulette_depth));
-  add("--resolution", fmt::format("{}x{}", scene.width, scene.height));
-  add("--isa", std::string(name(settings.render.isa)));
-  for (const auto& [key, value] : override_metadata(settings.overrides)) {
-    if (key == "camera") add("--camera", value);
-    if (key == "environment") add("--environment", value);
-    if (key == "environment_up") add("--environment-up", value);
-    if (key == "environment_scale") add("--environment-scale", value);
-    if (key == "compensate") line.push_back("--compensate");
-  }
-  return shell_line(line);
-}
-
 Json scene_json(const SceneComparison& scene, const CompareSettings& settings,
                 const std::vector<Rungs>& rungs) {
   const std::vector<SamplerSpec>& samplers = settings.samplers;
@@ -236,7 +227,9 @@ Json summarize(const Comparison& comparison) {
                {"overrides", override_metadata(settings.overrides)},
                {"complete", comparison.complete},
                {"timing_spread", settings.timing_spread},
+               {"clamp", nullptr},
                {"experiment", settings.experiment}};
+  if (settings.render.clamp) json["clamp"] = *settings.render.clamp;
   for (const Metric& metric : metrics()) {
     json["metrics"].push_back({{"name", metric.name},
                                {"title", metric.title},
@@ -256,7 +249,9 @@ Json summarize(const Comparison& comparison) {
     const Json verdict = verdict_json(scene, settings, rungs);
     if (!verdict.is_null()) json["verdicts"].push_back(verdict);
     json["scenes"].push_back(scene_json(scene, settings, rungs));
-    json["scenes"].back()["render_command"] = render_command(settings, scene);
+    json["scenes"].back()["render_command"] =
+        scene_command(scene.scene, settings.render, scene.depth, scene.width, scene.height,
+                      override_metadata(settings.overrides));
   }
   json["command"] = own_command_line();
   json["system"] = system_name();

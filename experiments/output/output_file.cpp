@@ -18,6 +18,17 @@ namespace lockstep {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// A device or a pipe, such as /dev/stdout: written in place, for a file must not replace it.
+bool is_special(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+}  // namespace
+
 void check_writable(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
@@ -28,6 +39,7 @@ void check_writable(const std::string& path) {
     throw Error(
         fmt::format("{}: the folder {} does not exist; create it first", path, folder.string()));
   }
+  if (is_special(path)) return;
   const std::string probe = path + ".probe";
   errno = 0;
   if (!std::ofstream(probe)) {
@@ -55,7 +67,8 @@ void make_output_directory(const std::string& path) {
 }
 
 void write_text_file(const std::string& path, std::string_view text) {
-  const std::string temporary = path + ".part";
+  const bool in_place = is_special(path);
+  const std::string temporary = in_place ? path : path + ".part";
   std::error_code error;
   errno = 0;
   std::ofstream file(temporary, std::ios::binary);
@@ -63,12 +76,12 @@ void write_text_file(const std::string& path, std::string_view text) {
   file.close();
   if (!file) {
     error.assign(errno ? errno : EIO, std::generic_category());
-  } else {
+  } else if (!in_place) {
     fs::rename(temporary, path, error);
   }
   if (!error) return;
   std::error_code ignored;
-  fs::remove(temporary, ignored);
+  if (!in_place) fs::remove(temporary, ignored);
   throw Error(
       fmt::format("{}: cannot be written: {}; make room or choose another place; what was there "
                   "before is unchanged",

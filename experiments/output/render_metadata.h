@@ -9,6 +9,9 @@
 
 namespace lockstep {
 
+// "biased: clamped at 10": how an image is labelled whose samples are.
+std::string clamp_text(float clamp);
+
 Metadata render_metadata(const std::string& scene, const SamplerSpec& sampler,
                          const RenderSettings& settings, const RenderResult& result);
 

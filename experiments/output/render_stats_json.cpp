@@ -29,11 +29,11 @@ nlohmann::ordered_json stages_json(const RenderStats& stats) {
   return json;
 }
 
-// Where the first samples were that were not finite; the seed is the render's.
-nlohmann::ordered_json bad_samples_json(const RenderStats& stats) {
+// Where the first samples were that were not finite.
+nlohmann::ordered_json bad_samples_json(const RenderStats& stats, const RenderSettings& settings) {
   auto json = nlohmann::ordered_json::array();
   for (const BadSample& b : stats.bad_samples) {
-    json.push_back({{"pixel", {b.x, b.y}}, {"sample", b.sample}});
+    json.push_back({{"pixel", {b.x, b.y}}, {"sample", b.sample}, {"seed", settings.seed}});
   }
   return json;
 }
@@ -79,13 +79,17 @@ nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Sc
           {"stage_cpu_seconds", stages_json(stats)},
           {"mean_weight", stats.mean_weight},
           {"zero_weights", stats.zero_weights},
-          {"biased", !sampler.unbiased()},
+          {"biased", !sampler.unbiased() || settings.clamp},
+          {"bias", settings.clamp ? clamp_text(*settings.clamp) : ""},
+          {"clamp", settings.clamp ? nlohmann::ordered_json(*settings.clamp) : nullptr},
+          {"clamped", stats.clamped},
           {"nonfinite", stats.nonfinite},
-          {"nonfinite_samples", bad_samples_json(stats)},
+          {"nonfinite_samples", bad_samples_json(stats, settings)},
           {"features", feature_names(scene.features())},
           {"left_out", feature_names(all_features & ~scene.features())},
           {"memory_bytes", memory_json(scene, stats)},
           {"peak_memory_bytes", peak_memory_bytes()},
+          {"command", settings.command},
           {"version", version()}};
 }
 

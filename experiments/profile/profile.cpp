@@ -1,6 +1,7 @@
 #include "experiments/profile/profile.h"
 
 #include "experiments/metrics/metrics.h"
+#include "experiments/output/render_command.h"
 
 #include <fmt/format.h>
 
@@ -25,6 +26,16 @@ SamplerSpec with_weight(SamplerSpec sampler, const ProfileWeight& weight) {
   return sampler;
 }
 
+// With the command that renders the image again, for messages.
+RenderSettings named(RenderSettings render, const Scene& scene, const ProfileSettings& settings,
+                     const SamplerSpec& sampler) {
+  const FilmDescription& film = scene.description().film;
+  render.scene_name = settings.scene;
+  render.command =
+      render_command(settings.scene, sampler, render, film.width, film.height, settings.overrides);
+  return render;
+}
+
 std::optional<HardwareCounts> counts_of(HardwareCounters& counters, const Scene& scene,
                                         const SamplerSpec& sampler, RenderSettings render_settings,
                                         const Progress& progress) {
@@ -46,7 +57,8 @@ ProfileErrors errors_with(const Scene& scene, const ProfileSettings& settings,
   ProfileErrors errors{spp, 0.0, std::vector<double>(metrics().size(), 0.0)};
   for (int seed = 0; seed < settings.seeds; ++seed) {
     render_settings.seed = settings.render.seed + std::uint32_t(seed);
-    const RenderResult result = render(scene, sampler, render_settings, progress);
+    const RenderResult result =
+        render(scene, sampler, named(render_settings, scene, settings, sampler), progress);
     const std::vector<double> values = evaluate(reference, result.image, "render").values;
     errors.cpu_seconds += result.stats.cpu_seconds / settings.seeds;
     for (std::size_t i = 0; i < values.size(); ++i) errors.values[i] += values[i] / settings.seeds;
@@ -65,9 +77,11 @@ void measure_errors(const Scene& scene, const ProfileSettings& settings, Profile
   RenderSettings render_settings = settings.render;
   render_settings.spp = settings.reference_spp;
   render_settings.seed = settings.render.seed + 0x5eed;
-  const Image image = render(scene, parse_sampler("owen"), render_settings, [&](double share) {
-                        return show(0.5 * share, "reference");
-                      }).image;
+  render_settings.clamp.reset();  // the truth is not biased
+  const SamplerSpec owen = parse_sampler("owen");
+  render_settings = named(render_settings, scene, settings, owen);
+  const auto progress_of_reference = [&](double share) { return show(0.5 * share, "reference"); };
+  const Image image = render(scene, owen, render_settings, progress_of_reference).image;
   const PreparedReference reference = prepare_reference(image);
   const ProfilePoint& base = base_point(profile);
   for (std::size_t i = 0; i < settings.weights.size(); ++i) {
@@ -142,6 +156,7 @@ Profile run_profile(const Scene& scene, const ProfileSettings& settings, const S
       const SamplerSpec sampler = with_weight(settings.sampler, weight);
       RenderSettings render_settings = settings.render;
       render_settings.lanes = lanes;
+      render_settings = named(render_settings, scene, settings, sampler);
       const double before = double(profile.points.size());
       const std::string label =
           fmt::format("weight {}, lanes {}", to_string(weight), to_string(lanes));

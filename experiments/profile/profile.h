@@ -6,6 +6,7 @@
 // SIMD: packets on the same rays are faster than single rays.
 #pragma once
 
+#include "core/image.h"
 #include "experiments/profile/hardware_counters.h"
 #include "packets/replay.h"
 
@@ -36,6 +37,7 @@ struct ProfileSettings {
   std::vector<ProfileWeight> weights;  // constant ones first, ascending, each in [0, 1]
   std::vector<LaneLayout> layouts;
   RenderSettings render;
+  Metadata overrides;  // of the scene: see override_metadata()
   int repeats = 5;
   int reference_spp = 0;  // of the image that errors are measured against; 0: no errors
   int seeds = 3;          // renders that errors are means of

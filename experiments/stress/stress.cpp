@@ -4,6 +4,7 @@
 #include "core/scene.h"
 #include "core/scene_warnings.h"
 #include "experiments/compare/statistics.h"
+#include "experiments/output/command_line.h"
 #include "experiments/output/machine.h"
 #include "experiments/output/progress.h"
 
@@ -15,8 +16,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 
 namespace lockstep {
@@ -76,9 +79,10 @@ using Images = std::vector<Image>;
 // Renders of one case with one sampler, at one width after the other.
 class SceneRun {
  public:
-  SceneRun(const StressScene& test, const Scene& scene, std::string sampler, std::string warning,
-           const StressPlan& plan, double reach)
-      : test_(test),
+  SceneRun(const std::string& case_name, const StressScene& test, const Scene& scene,
+           std::string sampler, std::string warning, const StressPlan& plan, double reach)
+      : case_(case_name),
+        test_(test),
         scene_(scene),
         sampler_(std::move(sampler)),
         warning_(std::move(warning)),
@@ -109,6 +113,8 @@ class SceneRun {
     s.spp = test_.spp, s.depth = test_.depth, s.roulette_depth = test_.roulette_depth;
     s.threads = 1;
     s.width = width;
+    s.scene_name = case_;
+    s.command = "lockstep stress -o again --case " + shell_quoted(case_);
     RenderResult r = render(scene_, parse_sampler(sampler_), s);
     row.nonfinite += r.stats.nonfinite;
     for (const BadSample& bad : r.stats.bad_samples) {
@@ -147,6 +153,7 @@ class SceneRun {
     }
   }
 
+  const std::string& case_;
   const StressScene& test_;
   const Scene& scene_;
   std::string sampler_, warning_;
@@ -165,7 +172,7 @@ void run_scene(const StressScene& test, const StressPlan& plan, double reach,
   const std::string warning = precision_warning(description);
   const Scene scene(std::move(description), embree_isa(choose_isa()));
   for (const std::string& sampler : samplers_of(test, plan)) {
-    SceneRun run(test, scene, sampler, warning, plan, reach);
+    SceneRun run(result.tested.name, test, scene, sampler, warning, plan, reach);
     for (const int width : plan.widths) {
       if (!interrupted()) result.rows.push_back(run.run(width));
     }
@@ -283,8 +290,9 @@ std::vector<StressResult> run_stress(const std::vector<StressCase>& cases, const
   std::vector<std::optional<StressResult>> found(cases.size());
   std::atomic<std::size_t> next = 0, done = 0;
   std::mutex reporting;
+  std::exception_ptr failure;
   // Threads of their own: a render limits the tasks of the whole program to its threads.
-  const auto work = [&] {
+  const auto judge_cases = [&] {
     for (std::size_t i = next++; i < cases.size() && !interrupted(); i = next++) {
       StressResult result = run_case(cases[i], plan, reach);
       if (interrupted()) return;  // it may lack renders
@@ -293,11 +301,25 @@ std::vector<StressResult> run_stress(const std::vector<StressCase>& cases, const
       found[i] = std::move(result);
     }
   };
+  const auto work = [&] {
+    try {
+      judge_cases();
+    } catch (...) {
+      const std::lock_guard lock(reporting);
+      if (!failure) failure = std::current_exception();
+      next = cases.size();
+    }
+  };
   std::vector<std::jthread> threads;
   const int count = plan.threads > 0 ? plan.threads : cpu_count();
-  for (int i = 1; i < std::min(count, int(cases.size())); ++i) threads.emplace_back(work);
+  try {
+    for (int i = 1; i < std::min(count, int(cases.size())); ++i) threads.emplace_back(work);
+  } catch (const std::system_error&) {
+    // Fewer threads than wanted do the same.
+  }
   work();
   threads.clear();
+  if (failure) std::rethrow_exception(failure);
   std::vector<StressResult> results;
   for (auto& result : found) {
     if (result && !result->rows.empty()) results.push_back(std::move(*result));
