@@ -30,6 +30,7 @@ void check_reference(const CompareSettings& settings) {
     throw UsageError(
         "--reference: one image is the reference of one scene at one depth; compare one at a time");
   }
+  read_metadata(settings.reference_file);
 }
 
 void check_targets(const CompareSettings& settings) {

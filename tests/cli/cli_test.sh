@@ -234,7 +234,7 @@ expect 0 'nothing is extrapolated' compare e.toml --seeds 1
 has toml/experiment.toml '^seeds = 1$'
 has toml/summary.json 'spp = \[1, 4\]'
 expect 0 '' compare toml/experiment.toml --resume
-for mistake in 'sede = 4:no key .sede.' 'seeds = 0:not a number from 1' 'seeds = "x":a number is expected' \
+for mistake in 'sede = 4:no key .sede.' 'seeds = 0:not a whole number from 1' 'seeds = "x":a number is expected' \
   'threads = 1.5:threads' 'samplers = 4:text in quotes' 'spp = [1,:error|expected|end'; do
   { echo; echo "${mistake%%:*}"; } >bad.toml
   expect 1 "bad.toml:[2-4]: .*(${mistake#*:})" compare bad.toml -o bad

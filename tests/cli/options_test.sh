@@ -108,7 +108,7 @@ refused() {
     fail "status $status: $command $option '$value': $(head -c 300 stderr)"
   [ "$(grep -vc warning: stderr)" = 1 ] && grep -q '^lockstep: ' stderr ||
     fail "not one line: $command $option '$value': $(head -c 300 stderr)"
-  [ -e out ] && fail "leaves a folder: $command $option '$value'" && rmdir out
+  [ -e out ] && fail "leaves a folder: $command $option '$value'" && rm -r out
   grep -qE -- "$pattern" stderr ||
     fail "no '$pattern': $command $option '$value': $(head -c 300 stderr)"
 }
