@@ -4,14 +4,14 @@ namespace lockstep {
 namespace {
 
 constexpr LaneLayout layouts[] = {{4, 4, 1}, {2, 2, 4}, {1, 1, 16}};
-constexpr std::uint8_t order[] = {1, 2, 0};
+constexpr std::uint8_t layout_order[] = {1, 2, 0};
 constexpr std::uint32_t fewest_samples = 32;
-constexpr std::uint32_t spacing = 4;  // half a tile is a large part
+constexpr std::uint32_t layout_spacing = 4;  // half a tile is a large part
 
 }  // namespace
 
 LayoutPolicy::LayoutPolicy(std::optional<LaneLayout> fixed)
-    : fixed_(fixed), choice_(0, order, spacing) {}
+    : fixed_(fixed), choice_(0, layout_order, layout_spacing) {}
 
 LayoutPlan LayoutPolicy::plan(std::uint32_t samples) {
   if (fixed_) return {*fixed_, {}};

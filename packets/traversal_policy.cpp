@@ -6,10 +6,10 @@ namespace lockstep {
 namespace {
 
 constexpr int smallest_queue = 64;  // rays; a trial on fewer says little
-constexpr std::uint32_t spacing = 2;
+constexpr std::uint32_t mode_spacing = 2;
 
 // The order of trials: first what is often best.
-constexpr std::uint8_t order[] = {
+constexpr std::uint8_t mode_order[] = {
     std::uint8_t(index({Packets::Eight, true})),    std::uint8_t(index({Packets::Sixteen, true})),
     std::uint8_t(index({Packets::Eight, false})),   std::uint8_t(index({Packets::StreamNM, true})),
     std::uint8_t(index({Packets::Sixteen, false})), std::uint8_t(index({Packets::Stream1M, false})),
@@ -34,7 +34,7 @@ TraversalPolicy::TraversalPolicy(std::optional<TraversalMode> fixed, int width) 
   const Packets packets = packets_of(width);
   for (int i = 0; i < 2 * bounces * spreads; ++i) {
     const bool coherent = i % spreads == 0 && width > 1;
-    choices_.emplace_back(index({packets, coherent}), order, spacing);
+    choices_.emplace_back(index({packets, coherent}), mode_order, mode_spacing);
   }
 }
 
