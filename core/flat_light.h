@@ -92,7 +92,7 @@ LOCKSTEP_INLINE LightSample<V> sample_flat_light(const LightRow<V>& light, MaskO
                            solid_angle_pdf(distance, abs(cos_light), light.area));
   const V pdf = light.probability * density;
   const MaskOf<V> lit = emits(light.side, cos_light) & (distance2 > V(0.0f)) & is_finite(pdf);
-  return {wi, distance, light.radiance, select(lit, pdf, V(0.0f))};
+  return {wi, distance, light.radiance, select(lit, pdf, V(0.0f)), MaskOf<V>(false), place};
 }
 
 // The solid angle in which sample_flat_light is uniform as p sees the light; 0: in area.

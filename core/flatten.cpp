@@ -224,7 +224,8 @@ void reserve(const SceneDescription& description, FlatScene& flat) {
 
 }  // namespace
 
-FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance) {
+FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance,
+                  const TextureTable& textures) {
   FlatScene flat;
   reserve(description, flat);
   flatten_materials(description, flat);
@@ -234,7 +235,7 @@ FlatScene flatten(const SceneDescription& description, glm::vec3 environment_rad
   append_instances(description, flat);
   flat.features = geometry_features(flat) | material_features_of(description, flat);
   append_normals(flat, description);
-  flatten_lights(description, environment_radiance, flat);
+  flatten_lights(description, environment_radiance, textures, flat);
   flat.features |= light_features(flat);
   flat.features |= texture_features(description, flat);
   append_uvs(flat, description);
@@ -257,8 +258,8 @@ std::uint64_t fingerprint(const FlatScene& flat) {
   using Floats = std::initializer_list<const std::vector<float>*>;
   for (const auto* values :
        Floats{&flat.positions, &flat.normals, &flat.uvs, &flat.spheres, &flat.material_parameters,
-              &flat.measured, &flat.light_rows, &flat.light_cdf, &flat.filter_x, &flat.filter_y,
-              &flat.filter_weight_x, &flat.filter_weight_y}) {
+              &flat.measured, &flat.light_rows, &flat.glow_rows, &flat.light_cdf, &flat.filter_x,
+              &flat.filter_y, &flat.filter_weight_x, &flat.filter_weight_y}) {
     print.add_all(*values);
   }
   using Integers = std::initializer_list<const std::vector<std::int32_t>*>;
@@ -292,7 +293,7 @@ std::size_t memory_bytes(const FlatScene& flat) {
              flat.geometry_rows, flat.coincident, flat.spheres, flat.material_kinds,
              flat.material_parameters, flat.measured, flat.material_maps, flat.texture_bindings,
              flat.opacities, flat.light_of_primitive, flat.light_kinds, flat.light_rows,
-             flat.light_cdf, flat.filter_x, flat.filter_y, flat.filter_weight_x,
+             flat.glow_rows, flat.light_cdf, flat.filter_x, flat.filter_y, flat.filter_weight_x,
              flat.filter_weight_y);
 }
 
@@ -313,7 +314,8 @@ SceneData view(const FlatScene& flat) {
                  nullptr,
                  flat.measured.data(),
                  std::int32_t(flat.measured.size() / measured_floats)};
-  d.lights = {int(flat.light_kinds.size()), flat.light_rows.data(), flat.light_cdf.data()};
+  d.lights = {int(flat.light_kinds.size()), flat.light_rows.data(), flat.light_cdf.data(),
+              flat.glow_rows.data()};
   d.camera = flat.camera;
   if (!flat.filter_x.empty()) {
     d.camera.filter_x = flat.filter_x.data();

@@ -55,6 +55,7 @@ struct FlatScene {
   std::vector<std::int32_t> light_of_primitive;
   std::vector<std::int32_t> light_kinds;
   std::vector<float> light_rows;
+  std::vector<float> glow_rows;  // of LightTable::glows
   std::vector<float> light_cdf;
   std::int32_t environment_light = -1;
   FeatureMask features = 0;
@@ -64,8 +65,10 @@ struct FlatScene {
 };
 
 // All but `coincident`, which the caller may search for beside other work.
-// `environment_radiance`: mean over the sphere where the environment is a map.
-FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance = {});
+// `environment_radiance`: mean over the sphere where the environment is a map. `textures`: those of
+// the description; without them, textured emission counts as white where lights are weighed.
+FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance = {},
+                  const TextureTable& textures = {});
 
 // Of all arrays.
 std::size_t memory_bytes(const FlatScene& flat);
@@ -89,7 +92,7 @@ TextureBinding binding_of(const FloatInput& input, int column);
 // core/flatten_lights.cpp: fills the light tables from the emitting shapes and the environment.
 // Call once the geometry tables are filled.
 void flatten_lights(const SceneDescription& description, glm::vec3 environment_radiance,
-                    FlatScene& flat);
+                    const TextureTable& textures, FlatScene& flat);
 
 // core/flatten_camera.cpp. Throws Error for pixel filters whose negative lobes nearly outweigh
 // them.

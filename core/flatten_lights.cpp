@@ -1,10 +1,13 @@
 #include "core/bounds.h"
 #include "core/flatten.h"
+#include "core/texture.h"
 #include "core/vec.h"
+#include "core/warp.h"
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -171,8 +174,76 @@ Light delta_light(const DistantLight& d, float radius) {
   return l;
 }
 
-// Textured emission is found by paths that hit it, never chosen; its lights keep their shape's
-// normal and side.
+// Points of a triangle at which its texture is looked up to weigh its light; fewer each where there
+// are many triangles.
+constexpr std::size_t most_lookups = 1 << 22, lookups_per_triangle = 64;
+
+using UvTriangle = std::array<glm::vec2, 3>;
+
+// As load_uv_corners() has them.
+UvTriangle uv_corners(const TriangleMesh& mesh, std::size_t triangle) {
+  if (mesh.uvs.empty()) return {glm::vec2(0.0f), glm::vec2(1.0f, 0.0f), glm::vec2(1.0f)};
+  const glm::uvec3 t = mesh.triangles[triangle];
+  return {mesh.uvs[t.x], mesh.uvs[t.y], mesh.uvs[t.z]};
+}
+
+glm::vec3 mean_color(const TextureTable& textures, const Emission& emission, const UvTriangle& uvs,
+                     std::size_t lookups) {
+  if (textures.nodes == nullptr) return glm::vec3(1.0f);
+  glm::vec3 sum(0.0f);
+  for (std::size_t i = 0; i < lookups; ++i) {
+    // Multiples of the plastic number's powers are well spread over the square.
+    const auto multiple = [i](double step) {
+      const double x = (double(i) + 0.5) * step;
+      return float(x - std::floor(x));
+    };
+    const Vec2<float> b =
+        uniform_triangle(Vec2<float>(multiple(0.7548776662466927), multiple(0.5698402909980532)));
+    const glm::vec2 uv = uvs[0] + b.x * (uvs[1] - uvs[0]) + b.y * (uvs[2] - uvs[0]);
+    const Rgba<float> texel = lookup(textures, emission.radiance.texture, uv);
+    sum += glm::vec3(texel.r, texel.g, texel.b);
+  }
+  return sum / float(lookups);
+}
+
+// Every triangle is a light by itself, with the power of the texture's mean over it.
+std::vector<Light> textured_lights(const TriangleMesh& mesh, const Emission& emission,
+                                   const TextureTable& textures, int first, FlatScene& flat) {
+  const auto binding = float(flat.texture_bindings.size());
+  flat.texture_bindings.push_back(binding_of(emission.radiance, 0));
+  flat.features |= bit(Feature::TexturedLights);
+  const std::size_t count = mesh.triangles.size();
+  const std::size_t lookups = std::clamp<std::size_t>(
+      most_lookups / std::max<std::size_t>(count, 1), 1, lookups_per_triangle);
+  std::vector<Light> lights;
+  for (std::size_t i = 0; i < count; ++i) {
+    flat.light_of_primitive.push_back(first + std::int32_t(i));
+    const Corners a = corners(mesh, i);
+    const UvTriangle uvs = uv_corners(mesh, i);
+    Light l = flat_light(LightKind::Triangle, a[0], a[1] - a[0], a[2] - a[0], emission);
+    const float plain = luminance(emission.radiance.value);
+    const float mean =
+        luminance(emission.radiance.value * mean_color(textures, emission, uvs, lookups));
+    l.power *= plain > 0.0f && std::isfinite(mean) ? std::max(mean, 0.0f) / plain : 0.0f;
+    for (const glm::vec2 uv : uvs) flat.glow_rows.insert(flat.glow_rows.end(), {uv.x, uv.y});
+    flat.glow_rows.insert(flat.glow_rows.end(), {binding, 0.0f});
+    l.outline = float(flat.glow_rows.size() / glow_stride);
+    lights.push_back(l);
+  }
+  return lights;
+}
+
+// Whether the triangles of a shape with textured emission are chosen as lights: not where they have
+// holes, which light sampling does not see, nor more than a float can number.
+bool are_chosen(const Shape& shape, const FlatScene& flat) {
+  const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
+  constexpr std::size_t most = 1 << 24;
+  return mesh && !flat.opacities[std::size_t(shape.material)].has_holes() &&
+         flat.glow_rows.size() / glow_stride + mesh->triangles.size() < most;
+}
+
+// Other textured emission is found by paths that hit it, never chosen; its lights keep their
+// shape's normal and side.
 void make_glow(const Emission& emission, std::vector<Light>& lights, FlatScene& flat) {
   const auto binding = float(flat.texture_bindings.size());
   flat.texture_bindings.push_back(binding_of(emission.radiance, 0));
@@ -232,21 +303,26 @@ void append_rows(const std::vector<Light>& lights, FlatScene& flat) {
 }  // namespace
 
 void flatten_lights(const SceneDescription& description, glm::vec3 environment_radiance,
-                    FlatScene& flat) {
+                    const TextureTable& textures, FlatScene& flat) {
   std::vector<Light> lights;
   for (std::size_t g = 0; g < description.shapes.size(); ++g) {
     const Shape& shape = description.shapes[g];
     if (!shape.emission || shape.emission->radiance.value == glm::vec3(0.0f)) continue;
     flat.geometry_rows[g * geometry_stride + 2] = std::int32_t(flat.light_of_primitive.size());
     const int first = int(lights.size());
+    const bool textured = shape.emission->radiance.texture >= 0;
+    const bool chosen = textured && are_chosen(shape, flat);
     std::vector<Light> added;
-    if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
+    if (chosen) {
+      added = textured_lights(std::get<TriangleMesh>(shape.geometry), *shape.emission, textures,
+                              first, flat);
+    } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry)) {
       added = mesh_lights(*mesh, *shape.emission, first, flat.light_of_primitive);
     } else {
       flat.light_of_primitive.push_back(first);
       added.push_back(sphere_light(std::get<Sphere>(shape.geometry), *shape.emission));
     }
-    if (shape.emission->radiance.texture >= 0) make_glow(*shape.emission, added, flat);
+    if (textured && !chosen) make_glow(*shape.emission, added, flat);
     lights.insert(lights.end(), added.begin(), added.end());
   }
   const bool from_afar = description.environment || !description.lights.empty();
@@ -263,6 +339,7 @@ void flatten_lights(const SceneDescription& description, glm::vec3 environment_r
     lights.push_back(std::visit([&](const auto& s) { return delta_light(s, radius); }, source));
   }
   append_rows(lights, flat);
+  flat.glow_rows.insert(flat.glow_rows.end(), glow_stride, 0.0f);
 }
 
 }  // namespace lockstep

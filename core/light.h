@@ -8,6 +8,7 @@
 #include "core/frame.h"
 #include "core/light_description.h"
 #include "core/simd_atan.h"
+#include "core/texture_coordinates.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
@@ -122,6 +123,20 @@ LOCKSTEP_INLINE LightSample<V> sample_delta_light(const LightRow<V>& light, Mask
           light.radiance * scale, select(lit, light.probability, V(0.0f))};
 }
 
+// How a texture lies on the lanes' textured triangles.
+template <class V>
+struct Glow {
+  UvCorners<V> uvs;
+  V binding;
+};
+template <class V>
+LOCKSTEP_INLINE Glow<V> load_glow(const LightTable& t, const LightRow<V>& light) {
+  const V number = select(is_textured(light), light.outline - V(1.0f), V(0.0f));
+  const IntOf<V> at = to_int(number) * IntOf<V>(glow_stride);
+  const auto a = gather_rows(t.glows, at), b = gather_rows(t.glows + 4, at);
+  return {{{a.x, a.y}, {a.z, a.w}, {b.x, b.y}}, b.z};
+}
+
 // A direction from p, with shading frame `frame`, to the lanes' lights. `both_sides`: light from
 // below the surface counts too.
 template <class V, FeatureMask F = all_features, bool both_sides = false>
@@ -130,8 +145,12 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
   const LightRow<V> light = load_light(scene.lights, index);
   LightSample<V> s{Vec3<V>(V(0.0f)), V(0.0f), Vec3<V>(V(0.0f)), V(0.0f)};
   const auto merge = [&](MaskOf<V> m, const LightSample<V>& other) LOCKSTEP_LAMBDA {
-    s = {select<V>(m, other.wi, s.wi), select(m, other.distance, s.distance),
-         select<V>(m, other.radiance, s.radiance), select(m, other.pdf, s.pdf), s.delta};
+    s = {select<V>(m, other.wi, s.wi),
+         select(m, other.distance, s.distance),
+         select<V>(m, other.radiance, s.radiance),
+         select(m, other.pdf, s.pdf),
+         s.delta,
+         s.place};
   };
   const auto of_kind = [&](Feature feature, LightKind kind) LOCKSTEP_LAMBDA {
     return needs<F>(scene, feature) ? light.is(kind) : MaskOf<V>(false);
@@ -142,7 +161,11 @@ LOCKSTEP_INLINE LightSample<V> sample_light(const SceneData& scene, IntOf<V> ind
   const MaskOf<V> flat = quad | triangle | disk;
   const MaskOf<V> sphere = of_kind(Feature::SphereLights, LightKind::Sphere);
   const MaskOf<V> environment = of_kind(Feature::Environment, LightKind::Environment);
-  if (any(flat)) merge(flat, sample_flat_light(light, quad, triangle, disk, p, u));
+  if (any(flat)) {
+    const LightSample<V> on_flat = sample_flat_light(light, quad, triangle, disk, p, u);
+    merge(flat, on_flat);
+    if (needs<F>(scene, Feature::TexturedLights)) s.place = on_flat.place;
+  }
   if (any(sphere)) merge(sphere, sample_sphere_light(light, p, u));
   if (any(environment)) merge(environment, sample_environment<both_sides>(light, frame, u));
   if (needs<F>(scene, Feature::EnvironmentMap)) {
@@ -171,10 +194,10 @@ template <class V, FeatureMask F = all_features>
 LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, const Vec3<V>& p,
                                      const Vec3<V>& wi, V distance) {
   const LightRow<V> light = load_light(scene.lights, index);
-  MaskOf<V> sphere = light.is(LightKind::Sphere), glows(false);
+  MaskOf<V> sphere = light.is(LightKind::Sphere), found(false);  // found: never chosen
   if (needs<F>(scene, Feature::TexturedLights)) {
-    glows = light.is(LightKind::Glow);
-    sphere = sphere | (glows & (light.area > V(0.0f)));
+    found = light.is(LightKind::Glow);
+    sphere = sphere | (found & (light.area > V(0.0f)));
   }
   V cos_light = -dot(light.normal, wi);
   V pdf = solid_angle_pdf(distance, max(abs(cos_light), V(1e-20f)), light.area);
@@ -192,10 +215,13 @@ LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, con
   }
   const Vec3<V> none(V(0.0f));
   Emitted<V> e{select<V>(emits(light.side, cos_light), light.radiance, none),
-               min(pdf * light.probability, V(1e38f)), glows, IntOf<V>(0)};
+               min(pdf * light.probability, V(1e38f)), found, IntOf<V>(0)};
   if (needs<F>(scene, Feature::TexturedLights)) {
-    e.pdf = select(glows, V(0.0f), e.pdf);
-    e.binding = to_int(select(glows, light.edge1.x, V(0.0f)));
+    const MaskOf<V> chosen = is_textured(light);
+    e.pdf = select(found, V(0.0f), e.pdf);
+    e.glows = found | chosen;
+    const V binding = select(found, light.edge1.x, load_glow(scene.lights, light).binding);
+    e.binding = to_int(select(e.glows, binding, V(0.0f)));
   }
   return e;
 }

@@ -18,6 +18,8 @@ struct LightSample {
   V pdf;  // 0: nothing arrives from there; the light's probability where it is a single direction
   MaskOf<V> delta = MaskOf<V>(false);  // a single direction, which no other technique finds: only
                                        // set where the scene has such lights
+  Vec2<V> place{V(0.0f)};  // on a flat light, as shares of its edges: only set where the scene has
+                           // textured lights
 };
 
 template <class V>
@@ -28,6 +30,12 @@ struct LightRow {
 
   LOCKSTEP_INLINE MaskOf<V> is(LightKind k) const { return kind == V(float(int(k))); }
 };
+
+// Triangles whose radiance is still to be multiplied by a texture.
+template <class V>
+LOCKSTEP_INLINE MaskOf<V> is_textured(const LightRow<V>& light) {
+  return light.is(LightKind::Triangle) & (light.outline > V(0.0f));
+}
 
 template <class I>
 LOCKSTEP_INLINE LightRow<FloatOf<I>> load_light(const LightTable& t, I index) {

@@ -187,7 +187,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
     environment_radiance = s.environment_map->mean_radiance();
   }
   if (description.compensate_microfacets) s.ggx_albedo = make_ggx_albedo();
-  s.flat = flatten(description, environment_radiance);
+  s.flat = flatten(description, environment_radiance, s.texture_table);
   description.shapes.clear();
   description.objects.clear();
   description.textures.clear();

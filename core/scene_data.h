@@ -81,9 +81,10 @@ struct MaterialTable {
 // Point and spot lights: 0 position, 16 intensity; spot lights: 4 cosines of the inner and outer
 // cone and SpotLight::Falloff as a number, 8 those cones' angles, 12 axis. Distant lights:
 // 12 direction in which light travels, 16 irradiance. Environment maps have no more than their
-// row's number and probability. Glow, textured emission, is never chosen, only found: 4 the
-// number of its radiance's TextureBinding; else like the flat light, of area 0, or the sphere that
-// it is on.
+// row's number and probability. Triangles with textured emission: 19 the number of their row of
+// `glows`, counted from 1. Glow, textured emission of spheres and of surfaces with holes, is never
+// chosen, only found: 4 the number of its radiance's TextureBinding; else like the flat light, of
+// area 0, or the sphere that it is on.
 enum class LightKind : std::int32_t {
   Parallelogram,
   Triangle,
@@ -98,6 +99,10 @@ enum class LightKind : std::int32_t {
 };
 inline constexpr int light_stride = 20;
 
+// Rows of LightTable::glows, `glow_stride` floats each: 0, 2 and 4 the triangle's corners on the
+// texture, 6 the number of its radiance's TextureBinding. The last one is padding.
+inline constexpr int glow_stride = 8;
+
 constexpr Feature light_feature(LightKind kind) {
   return Feature(unsigned(Feature::QuadLights) + unsigned(kind));
 }
@@ -106,6 +111,7 @@ struct LightTable {
   int count = 0;
   const float* rows = nullptr;
   const float* cdf = nullptr;  // cdf[i] = probability of choosing a light below i; count + 1 values
+  const float* glows = nullptr;
 };
 
 // Rows per Embree geometry id, `geometry_stride` integers each:

@@ -73,6 +73,23 @@ LOCKSTEP_INLINE V shadow_distance(const Surface<V>& surface, V distance) {
   return max(fma(distance, V(1.0f - 0x1p-12f), -rounding), V(0.0f));
 }
 
+// What the textures of the lanes' lights say where these were sampled; 1 for lights without.
+template <FeatureMask F, class V>
+[[gnu::noinline]] Vec3<V> sampled_glow(const SceneData& scene, const IntOf<V>& index,
+                                       const Vec2<V>& place, const MaskOf<V>& lanes) {
+  const LightRow<V> light = load_light(scene.lights, index);
+  const MaskOf<V> textured = lanes & is_textured(light);
+  if (none(textured)) return Vec3<V>(V(1.0f));
+  const Glow<V> glow = load_glow(scene.lights, light);
+  const Corners<V> corners{light.corner, light.corner + light.edge1, light.corner + light.edge2};
+  const TextureCoordinates<V> t = triangle_coordinates(corners, glow.uvs, place.x, place.y);
+  TexturePoint<V> at{t.uv, {}};
+  if (needs<F>(scene, Feature::Trilinear)) {
+    at.footprint = footprint_at<F>(scene, t, corners.at(place.x, place.y), light.normal);
+  }
+  return glow_color(scene, to_int(select(textured, glow.binding, V(0.0f))), textured, at);
+}
+
 // Light sampling: a shadow ray for every lane that may receive something.
 template <FeatureMask F, class Bsdf, class V>
 LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>& surface,
@@ -94,6 +111,9 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
   V weight = alone ? V(1.0f) : power_heuristic(s.pdf, f.pdf);
   if (needs_any<F>(scene, delta_light_features)) weight = select(s.delta, V(1.0f), weight);
   Vec3<V> radiance = throughput * f.f_cos * s.radiance * (weight / s.pdf);
+  if (needs<F>(scene, Feature::TexturedLights)) {
+    radiance = radiance * sampled_glow<F>(scene, light.index, s.place, lit);
+  }
   if (needs<F>(scene, Feature::Absorption)) {
     const I medium =
         medium_beyond(bsdf, surface, material, load<I>(queue.medium + i), wi.z < V(0.0f));

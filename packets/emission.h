@@ -17,13 +17,7 @@ template <int W, FeatureMask F>
   using I = Int<W>;
   const Rows<I> geometry = geometry_of_hits(scene, load<I>(hits.geometry + i), glows);
   const TexturePoint<V> at = texture_point<W, F>(scene, rays, hits, i, glows, geometry);
-  Vec3<V> color(V(1.0f));
-  for_each_distinct(binding, glows, [&](std::int32_t index, Mask<W> lanes) {
-    TextureBinding b = scene.materials.bindings[index];
-    b.scale = glm::vec3(1.0f);  // which the light's radiance already holds
-    color = select<V>(lanes, bound_value(scene.textures, b, at), color);
-  });
-  return color;
+  return glow_color(scene, binding, glows, at);
 }
 
 template <int W, FeatureMask F>

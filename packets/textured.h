@@ -21,6 +21,20 @@ LOCKSTEP_INLINE Vec3<V> bound_value(const TextureTable& textures, const TextureB
   return scale * Vec3<V>(number_of(texel, b.channel, b.power));
 }
 
+// What the textures of the lanes' bindings say of light there; its radiance already holds their
+// scale.
+template <class V>
+LOCKSTEP_INLINE Vec3<V> glow_color(const SceneData& scene, const IntOf<V>& binding,
+                                   const MaskOf<V>& lanes, const TexturePoint<V>& at) {
+  Vec3<V> color(V(1.0f));
+  for_each_distinct(binding, lanes, [&](std::int32_t index, MaskOf<V> same) {
+    TextureBinding b = scene.materials.bindings[index];
+    b.scale = glm::vec3(1.0f);
+    color = select<V>(same, bound_value(scene.textures, b, at), color);
+  });
+  return color;
+}
+
 // Rows of parameters of a packet's own, one per lane, in the layout of MaterialTable::parameters.
 template <int W>
 struct MaterialRows {
