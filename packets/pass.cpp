@@ -55,9 +55,9 @@ class SiteScope {
 };
 
 // The tile that comes at this place of an order: every place has another.
-int tile_at(TileOrder order, int place, int tiles) {
-  if (order == TileOrder::Forward) return place;
-  if (order == TileOrder::Backward) return tiles - 1 - place;
+int tile_at(TileOrder tile_order, int place, int tiles) {
+  if (tile_order == TileOrder::Forward) return place;
+  if (tile_order == TileOrder::Backward) return tiles - 1 - place;
   int step = std::max(1, int(0.618 * tiles));
   while (std::gcd(step, tiles) != 1) ++step;
   return int(std::int64_t(place) * step % tiles);

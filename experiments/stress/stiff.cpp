@@ -165,25 +165,24 @@ StressCase through_window(float half_size, int spp) {
           StressScene{.make = make, .rounding = 2e-3, .spp = spp, .depth = 2}};
 }
 
-// A lamp whose texture keeps it from being sampled: found by chance alone.
+// A sphere light whose texture keeps it from being sampled: found by chance alone.
 StressCase textured_lamp() {
+  constexpr double radius = 0.2, radiance = 20.0;
   const auto make = [](const std::string&) {
     SceneDescription scene = lit_floor();
     CheckerboardTexture constant;
     constant.odd = constant.even;
     scene.textures.emplace_back(constant);
-    add_lamp(scene, 0.2f, 0.2f, 1.0f, glm::vec3(1.0f));
+    add_sphere(scene, {0, 1, 0}, float(radius), black(scene), Emission{glm::vec3(float(radiance))});
     scene.shapes.back().emission->radiance.texture = 0;
-    scene.shapes.back().emission->radiance.value = glm::vec3(20.0f);
     return scene;
   };
-  return {
-      "lamp-found-by-chance", "stiff", "a small lamp that is never sampled, only hit",
-      "form factor of the lamp, Howell's B-3",
-      StressScene{.make = make,
-                  .expected = 20.0 * double(floor_albedo) * rectangle_form_factor(0.2, 0.2, 1.0),
-                  .rounding = 2e-3,
-                  .spp = 256}};
+  return {"lamp-found-by-chance", "stiff", "a small lamp that is never sampled, only hit",
+          "irradiance of a sphere wholly above the horizon",
+          StressScene{.make = make,
+                      .expected = radiance * double(floor_albedo) * radius * radius,
+                      .rounding = 2e-3,
+                      .spp = 256}};
 }
 
 }  // namespace
