@@ -1,3 +1,4 @@
+#include "core/location.h"
 #include "experiments/scenes/camera_override.h"
 #include "experiments/scenes/scene_report.h"
 
@@ -8,19 +9,11 @@
 #include <glm/trigonometric.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
 namespace lockstep {
 namespace {
-
-// Names in files may hold anything.
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
-  return text;
-}
 
 // 1234567 as 1,234,567.
 std::string grouped(std::size_t count) {
