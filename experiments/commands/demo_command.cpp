@@ -4,6 +4,7 @@
 #include "experiments/commands/compare_run.h"
 #include "experiments/commands/demo_plan.h"
 #include "experiments/commands/options.h"
+#include "experiments/output/output_file.h"
 
 #include <fmt/format.h>
 
@@ -58,6 +59,7 @@ PathCost measure_cost(RenderSettings settings) {
 
 void run_demo(const DemoOptions& options) {
   const Clock::time_point start = Clock::now();
+  make_output_directory(options.directory);
   CompareSettings settings;
   settings.scenes = {kScene};
   settings.directory = options.directory;

@@ -163,8 +163,8 @@ Json begin_note(const CompareSettings& settings) {
 }
 
 Journal open_journal(const CompareSettings& settings) {
-  make_output_directory(settings.directory);
   if (!settings.reference_folder.empty()) make_output_directory(settings.reference_folder);
+  make_output_directory(settings.directory);
   return Journal(settings.directory, settings.resume);
 }
 

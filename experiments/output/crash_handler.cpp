@@ -88,12 +88,16 @@ void print_block(int signal, const siginfo_t* info) {
   for (const CaughtSignal& caught : caught_signals) {
     if (caught.number == signal) out << ": " << caught.text;
   }
-  // Only a fault has an address; a signal that was sent does not.
-  if (info && info->si_code > 0 && signal != SIGABRT) {
+  // Only a fault has an address; a signal that was sent has a sender.
+  if (info->si_code > 0 && signal != SIGABRT) {
     out << " (address ";
     out.hexadecimal(reinterpret_cast<std::uintptr_t>(info->si_addr)) << ")";
   }
-  out << "; this is a defect of lockstep\n";
+  if (info->si_code <= 0 && info->si_pid != getpid()) {
+    out << "; sent by process " << std::uint64_t(info->si_pid) << "\n";
+  } else {
+    out << "; this is a defect of lockstep\n";
+  }
   if (uncaught_text[0] != '\0') out << "  error    " << uncaught_text << "\n";
   const RenderSite& site = render_site();
   if (site.render) {
