@@ -59,8 +59,7 @@ E parse_choice(std::string_view key, std::string_view value) {
 float parse_number(std::string_view key, std::string_view value) {
   float x = 0.0f;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), x);
-  if (error != std::errc() || end != value.data() + value.size() || !(x >= 0.0f) ||
-      !std::isfinite(x)) {
+  if (error != std::errc() || end != value.data() + value.size() || !(x >= 0.0f)) {
     throw UsageError(fmt::format("sampler option {}={} needs a number of at least 0", key, value));
   }
   return x;
