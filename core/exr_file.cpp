@@ -4,6 +4,7 @@
 
 #include "core/error.h"
 #include "core/image_limits.h"
+#include "core/location.h"
 
 #include <OpenEXR/Iex.h>
 #include <OpenEXR/ImfChannelList.h>
@@ -20,9 +21,12 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <memory>
 #include <tuple>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -46,8 +50,34 @@ void limit_headers() {
   static_cast<void>(once);
 }
 
+// OpenEXR takes whatever memory an attribute claims to need: no more, here, than the file has.
+// Headers are lists of name, type and value, an empty name at their end; those of several parts
+// follow one another.
+void check_attribute_sizes(const std::string& path) {
+  constexpr std::uint32_t multi_part = 0x1000;
+  std::error_code ignored;
+  const std::uintmax_t file_size = std::filesystem::file_size(path, ignored);
+  std::ifstream file(path, std::ios::binary);
+  std::uint32_t magic_and_version[2] = {}, size = 0;
+  file.read(reinterpret_cast<char*>(magic_and_version), sizeof(magic_and_version));
+  bool after_end = !(magic_and_version[1] & multi_part);
+  for (std::string name, type; std::getline(file, name, '\0');) {
+    if (name.empty() && std::exchange(after_end, true)) return;
+    if (name.empty()) continue;
+    after_end = !(magic_and_version[1] & multi_part);
+    std::getline(file, type, '\0');
+    file.read(reinterpret_cast<char*>(&size), sizeof(size));
+    if (file && size > file_size) {
+      throw Error("damaged image: its header's \"" + printable(name) +
+                  "\" claims to be larger than the file");
+    }
+    file.seekg(size, std::ios::cur);
+  }
+}
+
 std::unique_ptr<Imf::MultiPartInputFile> open_exr(const std::string& path) {
   limit_headers();
+  check_attribute_sizes(path);
   try {
     return std::make_unique<Imf::MultiPartInputFile>(path.c_str(), no_threads);
   } catch (const Iex::BaseExc& exception) {

@@ -274,6 +274,21 @@ TEST_F(ImageFiles, VastDamagedHeaderIsAnError) {
             std::string::npos);
 }
 
+TEST_F(ImageFiles, AttributesLargerThanTheirFileAreErrors) {
+  write_image(path("a.exr"), random_image(4, 4, 3), {{"key", "value"}});
+  std::ostringstream text;
+  text << std::ifstream(path("a.exr"), std::ios::binary).rdbuf();
+  std::string bytes = text.str();
+  const std::string type("string\0", 7);
+  ASSERT_NE(bytes.find(type), bytes.npos);
+  bytes.replace(bytes.find(type) + type.size(), 4, "\xff\xff\xff\x3f");  // 1 GiB
+  std::ofstream(path("b.exr"), std::ios::binary) << bytes;
+  for (const std::string& message : {error_of([&] { read_image(path("b.exr")); }),
+                                     error_of([&] { read_metadata(path("b.exr")); })}) {
+    EXPECT_NE(message.find("claims to be larger than the file"), message.npos) << message;
+  }
+}
+
 // The module of other formats is looked for beside the program: a copy of this one elsewhere has
 // none, and must still do all that it does with EXR files.
 TEST_F(ImageFiles, OnlyOtherFormatsNeedTheModule) {
