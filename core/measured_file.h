@@ -24,7 +24,7 @@ struct MeasuredFile {
 
 // By the name's extension: .brdf is text, all else MERL's. Throws Error, one line that begins with
 // the path, where the file is missing, cut short or malformed, has counts that do not fit, more
-// than 16384 measurements, or values that are not finite; and where it is of another format that
+// than 8192 measurements, or values that are not finite; and where it is of another format that
 // is known by its first bytes.
 MeasuredFile read_measured_file(const std::string& path);
 

@@ -18,7 +18,7 @@
 namespace lockstep {
 namespace {
 
-constexpr std::size_t most_samples = 1 << 14;  // each cell looks at them all
+constexpr std::size_t most_samples = 1 << 13;  // each cell looks at them all
 constexpr std::size_t most_wavelengths = 1024;
 constexpr std::uintmax_t most_bytes = 256u << 20;
 
@@ -170,6 +170,24 @@ glm::vec3 mean_around(const Samples& samples, glm::vec3 at, std::vector<float>& 
   return sum / weights;
 }
 
+// The mean over a cell, of a few places: between far measurements values change abruptly.
+glm::vec3 mean_in_cell(const Samples& samples, int h, int d, int p, std::vector<float>& squares) {
+  constexpr double places[4][3] = {
+      {0.125, 0.375, 0.625}, {0.375, 0.875, 0.125}, {0.625, 0.125, 0.875}, {0.875, 0.625, 0.375}};
+  glm::vec3 sum(0.0f);
+  float count = 0.0f;
+  for (const auto& place : places) {
+    const auto [wo, wi] = directions_at(h + place[0], d + place[1], p + place[2]);
+    if (!(wo.z > 0.0f && wi.z > 0.0f)) continue;
+    const double phi =
+        std::atan2(double(wi.y), double(wi.x)) - std::atan2(double(wo.y), double(wo.x));
+    const auto theta = [](glm::vec3 w) { return std::acos(std::min(double(w.z), 1.0)); };
+    sum += mean_around(samples, position_of(theta(wi), theta(wo), phi), squares);
+    count += 1.0f;
+  }
+  return count > 0.0f ? sum / count : glm::vec3(-1.0f);
+}
+
 }  // namespace
 
 MeasuredCells read_measured_samples(const std::string& path) {
@@ -179,13 +197,7 @@ MeasuredCells read_measured_samples(const std::string& path) {
     std::vector<float> squares(samples.rgb.size());
     for (int d = 0; d < measured_differences; ++d) {
       for (int p = 0; p < measured_azimuths; ++p) {
-        const auto [wo, wi] = directions_of_cell(h, d, p);
-        if (!(wo.z > 0.0f && wi.z > 0.0f)) continue;
-        const double phi =
-            std::atan2(double(wi.y), double(wi.x)) - std::atan2(double(wo.y), double(wo.x));
-        const auto theta = [](glm::vec3 w) { return std::acos(std::min(double(w.z), 1.0)); };
-        cells.rgb[MeasuredCells::index(h, d, p)] =
-            mean_around(samples, position_of(theta(wi), theta(wo), phi), squares);
+        cells.rgb[MeasuredCells::index(h, d, p)] = mean_in_cell(samples, h, d, p, squares);
       }
     }
   });

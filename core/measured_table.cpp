@@ -152,13 +152,17 @@ float best_half_share(MeasuredTable table) {
 
 }  // namespace
 
-DirectionPair directions_of_cell(int half, int difference, int azimuth) {
-  const double h = theta_half(half + 0.5), d = theta_difference(difference + 0.5);
-  const double p = phi_difference(azimuth + 0.5);
+DirectionPair directions_at(double half, double difference, double azimuth) {
+  const double h = theta_half(half), d = theta_difference(difference);
+  const double p = phi_difference(azimuth);
   const glm::dvec3 normal(std::sin(h), 0.0, std::cos(h));
   const glm::dvec3 meridian(std::cos(h), 0.0, -std::sin(h)), parallel(0.0, 1.0, 0.0);
   const glm::dvec3 across = std::sin(d) * (std::cos(p) * meridian + std::sin(p) * parallel);
   return {glm::vec3(std::cos(d) * normal - across), glm::vec3(std::cos(d) * normal + across)};
+}
+
+DirectionPair directions_of_cell(int half, int difference, int azimuth) {
+  return directions_at(half + 0.5, difference + 0.5, azimuth + 0.5);
 }
 
 MeasuredTable make_measured_table(MeasuredCells cells, const std::string& name) {

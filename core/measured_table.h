@@ -51,7 +51,8 @@ struct DirectionPair {
   glm::vec3 wo, wi;  // unit; below the surface where z < 0
 };
 
-// The directions that the middle of a cell stands for.
+// The directions at a place in the grid, in cells from its corner; and at the middle of a cell.
+DirectionPair directions_at(double half, double difference, double azimuth);
 DirectionPair directions_of_cell(int half, int difference, int azimuth);
 
 // Unknown cells, as those below the horizon, get the value of the next smaller theta_half. Throws
