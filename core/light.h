@@ -220,7 +220,8 @@ LOCKSTEP_INLINE Emitted<V> hit_light(const SceneData& scene, IntOf<V> index, con
     const MaskOf<V> chosen = is_textured(light);
     e.pdf = select(found, V(0.0f), e.pdf);
     e.glows = found | chosen;
-    const V binding = select(found, light.edge1.x, load_glow(scene.lights, light).binding);
+    V binding = light.edge1.x;
+    if (any(chosen)) binding = select(chosen, load_glow(scene.lights, light).binding, binding);
     e.binding = to_int(select(e.glows, binding, V(0.0f)));
   }
   return e;
