@@ -1,17 +1,7 @@
 #!/bin/bash
 # Runs the built program as a user would: exit statuses, messages and files.
 # Usage: cli_test.sh PROGRAM
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+source "$(dirname "$0")/checks.sh"
 
 # expect STATUS PATTERN ARGUMENT...: runs the program; its stderr (stdout when it succeeds) has
 # PATTERN, and an error is one line that begins with the program's name.
@@ -249,8 +239,4 @@ expect 2 'SCENE' compare --samplers random -o bad
 expect 2 'output' compare cornell --samplers random
 [ -e bad ] && fail "a mistake left a folder"
 
-if [ "$failures" != 0 ]; then
-  echo "$failures failed"
-  exit 1
-fi
-echo "all passed"
+finish

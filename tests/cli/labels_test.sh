@@ -2,17 +2,7 @@
 # Runs the built program where its image is not simply right: samples that are not finite are located,
 # clamped images are labelled wherever they go.
 # Usage: labels_test.sh PROGRAM
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+source "$(dirname "$0")/checks.sh"
 
 run() { timeout 60 "$program" "$@" >stdout 2>stderr </dev/null || fail "lockstep $*: $(cat stderr)"; }
 has() { grep -aqE -- "$2" "$1" || fail "no '$2' in $1: $(head -c 600 "$1")"; }
@@ -86,8 +76,4 @@ timeout 60 "$program" compare cornell --samplers random,owen --spp 2,4 --seeds 1
   --resolution 32x24 --threads 1 --clamp 0.5 -o clamped --resume >stdout 2>stderr && fail "resumes another clamp"
 has stderr 'other conditions'
 
-if [ "$failures" != 0 ]; then
-  echo "$failures failed"
-  exit 1
-fi
-echo "all passed"
+finish

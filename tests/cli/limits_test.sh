@@ -2,17 +2,7 @@
 # Runs the built program with little memory and on full disks: it ends with one clear line and loses
 # nothing that was there.
 # Usage: limits_test.sh PROGRAM
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+source "$(dirname "$0")/checks.sh"
 
 # A build with sanitizers needs more address space than there is.
 (ulimit -v 2000000 && "$program" --version >/dev/null 2>&1) || { echo "skipped: no ulimit -v"; exit 77; }
@@ -123,8 +113,4 @@ if on_small_disk true 2>/dev/null; then
   [ "$(tail -c 1 errors.csv | wc -l)" = 1 ] || fail "errors.csv ends within a row"
 fi
 
-if [ "$failures" != 0 ]; then
-  echo "$failures failed"
-  exit 1
-fi
-echo "all passed"
+finish

@@ -2,17 +2,7 @@
 # Gives every option of every command values that it cannot have: each is refused by its name, in one
 # line and with status 2 (1 for files), before anything is done.
 # Usage: options_test.sh PROGRAM
-set -u
-program=$1
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 1
-failures=0
-
-fail() {
-  echo "FAILED: $*"
-  failures=$((failures + 1))
-}
+source "$(dirname "$0")/checks.sh"
 
 # A line for each option: commands, option, kind, and what belongs to the kind:
 #   int LOW HIGH, num LOW HIGH   numbers in a range
@@ -190,8 +180,4 @@ for image in folder.exr empty.exr . '' /dev/null nosuch.exr; do
 done
 for directory in nosuch file ''; do one_line runs "$directory"; done
 
-if [ "$failures" != 0 ]; then
-  echo "$failures failed"
-  exit 1
-fi
-echo "all passed"
+finish
