@@ -123,7 +123,8 @@ int step_count(const Segment& s) {
   const double turn = angle_between(s.p[1] - s.p[0], s.p[2] - s.p[1]) +
                       angle_between(s.p[2] - s.p[1], s.p[3] - s.p[2]) +
                       angle_between(s.normal[0], s.normal[1]);
-  const double steps = std::max(std::sqrt(6.0 * bend / (8.0 * tolerance)), turn / (pi / 12.0));
+  const double by_bend = tolerance > 0.0 ? std::sqrt(6.0 * bend / (8.0 * tolerance)) : 0.0;
+  const double steps = std::max(by_bend, turn / (pi / 12.0));
   return static_cast<int>(std::clamp(std::ceil(steps), 1.0, 64.0));
 }
 
