@@ -13,6 +13,8 @@ constexpr std::uint32_t of_runner_up = 4, of_others = 16;
 constexpr double remembered = 0.95;  // of a sum when the next trial is added
 constexpr double outlier = 4.0;      // ratios beyond: a thread was interrupted
 constexpr double close = 1.15;       // a runner-up
+constexpr double very_close = 1.1;   // one that is tried whenever a trial is due, so many times
+constexpr int unsure = 16;           // at first: most that is lost is lost before the choice
 constexpr double much_slower = 1.5;  // above this ratio an alternative
 constexpr int turns_of_rest = 3;     // sits out that many turns
 
@@ -37,11 +39,13 @@ std::optional<int> MeasuredChoice::trial() {
   random_ = random_ * 1664525u + 1013904223u;
   if ((random_ >> 16) % spacing_ != 0) return std::nullopt;
   if (turns_ < order_.size()) return next_in_order();
+  const auto second = runner_up();
+  const Arm runner = second ? arms_[std::size_t(*second)] : Arm{};
+  if (second && runner.count < unsure && runner.ratio() < very_close) return second;
   ++later_pieces_;
   if (later_pieces_ % of_others == 0) return next_in_order();
   if (later_pieces_ % of_runner_up != 0) return std::nullopt;
-  const auto second = runner_up();
-  const bool is_close = second && arms_[std::size_t(*second)].ratio() < close;
+  const bool is_close = second && runner.ratio() < close;
   return is_close || later_pieces_ % of_others == of_runner_up ? second : std::nullopt;
 }
 
