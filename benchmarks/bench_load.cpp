@@ -6,12 +6,12 @@
 //   read_scene, scene   and of ours.
 #include "bench_main.h"
 #include "bench_statistics.h"
+#include "core/embree.h"
 #include "core/read_scene.h"
 #include "core/scene.h"
 #include "packets/isa.h"
 
 #include <benchmark/benchmark.h>
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <unistd.h>
 

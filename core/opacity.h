@@ -3,9 +3,8 @@
 // Images are looked up whole, without a footprint: a filtered edge of a leaf is no edge any more.
 #pragma once
 
+#include "core/embree.h"
 #include "core/flatten.h"
-
-#include <embree3/rtcore.h>
 
 namespace lockstep {
 

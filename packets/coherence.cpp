@@ -1,6 +1,6 @@
 #include "packets/coherence.h"
 
-#include <embree3/rtcore.h>
+#include "core/embree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,7 @@ float value(const RayLog& log, const RayLog::Queue& queue, int field, int i) {
 }
 
 RTCHit closest_hit(RTCScene scene, const RayLog& log, const RayLog::Queue& queue, int i) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  ClosestQuery query = closest_query(false);
   RTCRayHit ray{};
   ray.ray.org_x = value(log, queue, 0, i);
   ray.ray.org_y = value(log, queue, 1, i);
@@ -31,7 +30,7 @@ RTCHit closest_hit(RTCScene scene, const RayLog& log, const RayLog::Queue& queue
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &context, &ray);
+  trace(rtcIntersect1, scene, query, &ray);
   return ray.hit;
 }
 

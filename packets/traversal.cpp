@@ -2,9 +2,9 @@
 #include "packets/traversal.h"
 
 #include "packets/flush_denormals.h"
+#include "packets/ray_packets.h"
+#include "packets/ray_streams.h"
 #include "packets/stage_clock.h"
-
-#include <embree3/rtcore.h>
 
 #include <algorithm>
 #include <bit>
@@ -14,224 +14,10 @@ namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 namespace {
 
-constexpr int chunk = 128;       // rays of a stream
 constexpr int trial_slice = 64;  // rays traced in one mode, then as many in another,
 constexpr int trial_slices = 8;  // at most
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 RTCScene embree(const SceneData& scene) { return static_cast<RTCScene>(scene.embree_scene); }
-
-RTCIntersectContext make_context(bool coherent) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags =
-      coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  return context;
-}
-
-template <class T, int P>
-LOCKSTEP_INLINE void copy(T (&to)[P], const T* from) {
-  std::memcpy(to, from, sizeof to);
-}
-
-// What does not differ from ray to ray; Embree leaves it as it is.
-template <int P>
-void set_constants(RTCRayNt<P>& ray) {
-  for (int lane = 0; lane < P; ++lane) {
-    ray.tnear[lane] = ray.time[lane] = 0.0f;
-    ray.mask[lane] = ~0u;
-    ray.id[lane] = unsigned(lane);
-    ray.flags[lane] = 0;
-  }
-}
-
-template <int P>
-RTCRayNt<P>& rays_of(RTCRayHitNt<P>& element) {
-  return element.ray;
-}
-template <int P>
-RTCRayNt<P>& rays_of(RTCRayNt<P>& element) {
-  return element;
-}
-
-// Entries i... of the queue.
-template <int P, class Queue>
-LOCKSTEP_INLINE void set_rays(RTCRayNt<P>& ray, const Queue& queue, int i) {
-  copy(ray.org_x, queue.origin.x + i);
-  copy(ray.org_y, queue.origin.y + i);
-  copy(ray.org_z, queue.origin.z + i);
-  copy(ray.dir_x, queue.direction.x + i);
-  copy(ray.dir_y, queue.direction.y + i);
-  copy(ray.dir_z, queue.direction.z + i);
-}
-template <int P>
-LOCKSTEP_INLINE void set_closest(RTCRayHitNt<P>& packet, const RayQueue& queue, int i) {
-  set_rays(packet.ray, queue, i);
-  for (int lane = 0; lane < P; ++lane) packet.ray.tfar[lane] = infinity;
-  for (int lane = 0; lane < P; ++lane) packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-}
-template <int P>
-LOCKSTEP_INLINE void set_shadow(RTCRayNt<P>& ray, const ShadowQueue& queue, int i) {
-  set_rays(ray, queue, i);
-  copy(ray.tfar, queue.distance + i);
-}
-template <int P>
-LOCKSTEP_INLINE void keep_hits(const RTCRayHitNt<P>& packet, HitArray& hits, int i) {
-  std::memcpy(hits.geometry + i, packet.hit.geomID, sizeof packet.hit.geomID);
-  std::memcpy(hits.primitive + i, packet.hit.primID, sizeof packet.hit.primID);
-  std::memcpy(hits.instance + i, packet.hit.instID[0], sizeof packet.hit.instID[0]);
-  std::memcpy(hits.distance + i, packet.ray.tfar, sizeof packet.ray.tfar);
-  std::memcpy(hits.u + i, packet.hit.u, sizeof packet.hit.u);
-  std::memcpy(hits.v + i, packet.hit.v, sizeof packet.hit.v);
-}
-
-// Lanes behind the queue's end hold anything; Embree splits wide packets and may look at all lanes
-// of a part, so they get the first ray.
-template <int P>
-void repeat_first(RTCRayNt<P>& ray, int rays) {
-  for (auto* field : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z, ray.tfar}) {
-    std::fill(field + rays, field + P, field[0]);
-  }
-}
-
-// -1 in the lanes that carry a ray, as Embree wants it.
-template <int P>
-struct alignas(64) Valid {
-  std::int32_t lane[P];
-
-  explicit Valid(int rays) {
-    for (int i = 0; i < P; ++i) lane[i] = i < rays ? -1 : 0;
-  }
-};
-
-template <int P>
-LOCKSTEP_INLINE void intersect(RTCScene scene, RTCIntersectContext* context, const Valid<P>& valid,
-                               RTCRayHitNt<P>* packet) {
-  void* p = packet;
-  if constexpr (P == 1) rtcIntersect1(scene, context, static_cast<RTCRayHit*>(p));
-  if constexpr (P == 4) rtcIntersect4(valid.lane, scene, context, static_cast<RTCRayHit4*>(p));
-  if constexpr (P == 8) rtcIntersect8(valid.lane, scene, context, static_cast<RTCRayHit8*>(p));
-  if constexpr (P == 16) rtcIntersect16(valid.lane, scene, context, static_cast<RTCRayHit16*>(p));
-}
-template <int P>
-LOCKSTEP_INLINE void occlude(RTCScene scene, RTCIntersectContext* context, const Valid<P>& valid,
-                             RTCRayNt<P>* packet) {
-  void* p = packet;
-  if constexpr (P == 1) rtcOccluded1(scene, context, static_cast<RTCRay*>(p));
-  if constexpr (P == 4) rtcOccluded4(valid.lane, scene, context, static_cast<RTCRay4*>(p));
-  if constexpr (P == 8) rtcOccluded8(valid.lane, scene, context, static_cast<RTCRay8*>(p));
-  if constexpr (P == 16) rtcOccluded16(valid.lane, scene, context, static_cast<RTCRay16*>(p));
-}
-
-template <int P>
-void closest_packets(RTCScene scene, bool coherent, const RayQueue& rays, int begin, int end,
-                     HitArray& hits) {
-  alignas(64) RTCRayHitNt<P> packet{};
-  set_constants(packet.ray);
-  RTCIntersectContext context = make_context(coherent);
-  const Valid<P> all(P);
-  for (int i = begin; i < end; i += P) {
-    set_closest(packet, rays, i);
-    if (end - i >= P) {
-      intersect<P>(scene, &context, all, &packet);
-    } else {
-      repeat_first(packet.ray, end - i);
-      intersect<P>(scene, &context, Valid<P>(end - i), &packet);
-    }
-    keep_hits(packet, hits, i);
-  }
-}
-
-template <int P>
-void occluded_packets(RTCScene scene, bool coherent, ShadowQueue& rays, int begin, int end) {
-  RTCIntersectContext context = make_context(coherent);
-  alignas(64) RTCRayNt<P> packet{};
-  set_constants(packet);
-  const Valid<P> all(P);
-  for (int i = begin; i < end; i += P) {
-    set_shadow(packet, rays, i);
-    if (end - i >= P) {
-      occlude<P>(scene, &context, all, &packet);
-    } else {
-      repeat_first(packet, end - i);
-      occlude<P>(scene, &context, Valid<P>(end - i), &packet);
-    }
-    std::memcpy(rays.distance + i, packet.tfar, sizeof packet.tfar);
-  }
-}
-
-// Streams: N rays side by side in each element. Elements are kept by each thread, with what never
-// changes in place: to set it anew would cost short queues and trials some 5 %.
-template <class Element, int N>
-Element (&stream_elements())[chunk / N] {
-  struct Stream {
-    alignas(64) Element element[chunk / N];
-    Stream() {
-      for (Element& e : element) set_constants(rays_of(e));
-    }
-  };
-  thread_local Stream stream;
-  return stream.element;
-}
-
-// Lanes behind the end of the queue get an empty interval, which Embree takes for inactive.
-template <int N>
-void retire_lanes(RTCRayNt<N>& ray, int rays) {
-  for (int lane = rays; lane < N; ++lane) {
-    ray.tnear[lane] = infinity;
-    ray.tfar[lane] = -infinity;
-  }
-}
-template <int N>
-void restore_lanes(RTCRayNt<N>& ray, int rays) {
-  for (int lane = rays; lane < N; ++lane) ray.tnear[lane] = 0.0f;
-}
-
-template <int N>
-void closest_stream(RTCScene scene, bool coherent, const RayQueue& rays, int begin, int end,
-                    HitArray& hits) {
-  auto& stream = stream_elements<RTCRayHitNt<N>, N>();
-  RTCIntersectContext context = make_context(coherent);
-  for (int first = begin; first < end; first += chunk) {
-    const int elements = (std::min(chunk, end - first) + N - 1) / N;
-    for (int m = 0; m < elements; ++m) set_closest(stream[m], rays, first + m * N);
-    const int in_last = end - first - (elements - 1) * N;
-    retire_lanes(stream[elements - 1].ray, in_last);
-    void* p = stream;
-    if constexpr (N == 1) {
-      rtcIntersect1M(scene, &context, static_cast<RTCRayHit*>(p), unsigned(elements),
-                     sizeof stream[0]);
-    } else {
-      rtcIntersectNM(scene, &context, static_cast<RTCRayHitN*>(p), N, unsigned(elements),
-                     sizeof stream[0]);
-    }
-    restore_lanes(stream[elements - 1].ray, in_last);
-    for (int m = 0; m < elements; ++m) keep_hits(stream[m], hits, first + m * N);
-  }
-}
-
-template <int N>
-void occluded_stream(RTCScene scene, bool coherent, ShadowQueue& rays, int begin, int end) {
-  RTCIntersectContext context = make_context(coherent);
-  auto& stream = stream_elements<RTCRayNt<N>, N>();
-  for (int first = begin; first < end; first += chunk) {
-    const int elements = (std::min(chunk, end - first) + N - 1) / N;
-    for (int m = 0; m < elements; ++m) set_shadow(stream[m], rays, first + m * N);
-    const int in_last = end - first - (elements - 1) * N;
-    retire_lanes(stream[elements - 1], in_last);
-    void* p = stream;
-    if constexpr (N == 1) {
-      rtcOccluded1M(scene, &context, static_cast<RTCRay*>(p), unsigned(elements), sizeof stream[0]);
-    } else {
-      rtcOccludedNM(scene, &context, static_cast<RTCRayN*>(p), N, unsigned(elements),
-                    sizeof stream[0]);
-    }
-    for (int m = 0; m < elements; ++m) {
-      std::memcpy(rays.distance + first + m * N, stream[m].tfar, sizeof stream[m].tfar);
-    }
-    restore_lanes(stream[elements - 1], in_last);
-  }
-}
 
 // The distances to the spheres among the hits, computed alike for every mode: Embree's intersectors
 // of single rays and of packets round them differently. Embree's distance tells which of the two
@@ -316,9 +102,11 @@ void with_packets(Packets packets, const F& f) {
     case Packets::Sixteen:
       return f(sixteen, std::false_type());
     case Packets::Stream1M:
-      return f(one, std::true_type());
+      if constexpr (has_streams) return f(one, std::true_type());
+      return;
     case Packets::StreamNM:
-      return f(sixteen, std::true_type());
+      if constexpr (has_streams) return f(sixteen, std::true_type());
+      return;
   }
 }
 

@@ -28,7 +28,12 @@ std::optional<TraversalMode> parse_traversal(std::string_view text) {
   for (int i = 0; i < int(std::size(names)); ++i) {
     if (rest != names[i]) continue;
     mode.packets = Packets(i);
-    if (mode != TraversalMode{Packets::Single, true}) return mode;
+    if (mode == TraversalMode{Packets::Single, true}) break;
+    if (index(mode) < traversal_modes) return mode;
+    throw UsageError(fmt::format(
+        "--traversal {}: Embree 4 has no streams of rays, and this program is built with it; "
+        "choose auto, single, packet4, packet8 or packet16",
+        text));
   }
   throw UsageError(fmt::format(
       "--traversal: '{}' is not auto, single, or one of packet4, packet8, packet16, stream1m and "

@@ -10,7 +10,7 @@
 namespace lockstep {
 
 // rtcIntersect1/4/8/16, rtcIntersect1M over single rays, rtcIntersectNM over packets of 16; and
-// rtcOccluded... alike.
+// rtcOccluded... alike. Embree 4 has no streams: the last two are not modes there.
 enum class Packets : std::uint8_t { Single, Four, Eight, Sixteen, Stream1M, StreamNM };
 
 struct TraversalMode {
@@ -20,7 +20,8 @@ struct TraversalMode {
   bool operator==(const TraversalMode&) const = default;
 };
 
-inline constexpr int traversal_modes = 12;
+inline constexpr bool has_streams = LOCKSTEP_EMBREE_MAJOR < 4;
+inline constexpr int traversal_modes = has_streams ? 12 : 8;
 
 constexpr int index(TraversalMode mode) { return 2 * int(mode.packets) + int(mode.coherent); }
 constexpr TraversalMode traversal_mode(int index) { return {Packets(index / 2), index % 2 == 1}; }

@@ -1,6 +1,7 @@
 #include "packets/traversal_policy.h"
 
 #include <algorithm>
+#include <array>
 
 namespace lockstep {
 namespace {
@@ -9,13 +10,20 @@ constexpr int smallest_queue = 64;  // rays; a trial on fewer says little
 constexpr std::uint32_t mode_spacing = 2;
 
 // The order of trials: first what is often best.
-constexpr std::uint8_t mode_order[] = {
-    std::uint8_t(index({Packets::Eight, true})),    std::uint8_t(index({Packets::Sixteen, true})),
-    std::uint8_t(index({Packets::Eight, false})),   std::uint8_t(index({Packets::StreamNM, true})),
-    std::uint8_t(index({Packets::Sixteen, false})), std::uint8_t(index({Packets::Stream1M, false})),
-    std::uint8_t(index({Packets::Four, false})),    std::uint8_t(index({Packets::StreamNM, false})),
-    std::uint8_t(index({Packets::Single, false})),  std::uint8_t(index({Packets::Four, true})),
-    std::uint8_t(index({Packets::Stream1M, true}))};
+constexpr TraversalMode best_first[] = {
+    {Packets::Eight, true},    {Packets::Sixteen, true},   {Packets::Eight, false},
+    {Packets::StreamNM, true}, {Packets::Sixteen, false},  {Packets::Stream1M, false},
+    {Packets::Four, false},    {Packets::StreamNM, false}, {Packets::Single, false},
+    {Packets::Four, true},     {Packets::Stream1M, true}};
+constexpr int alternatives = has_streams ? 11 : 7;
+constexpr auto mode_order = [] {
+  std::array<std::uint8_t, alternatives> order{};
+  int n = 0;
+  for (const TraversalMode mode : best_first) {
+    if (index(mode) < traversal_modes) order[std::size_t(n++)] = std::uint8_t(index(mode));
+  }
+  return order;
+}();
 
 Packets packets_of(int width) {
   return width == 16  ? Packets::Sixteen

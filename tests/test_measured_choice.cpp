@@ -236,7 +236,7 @@ TEST(LayoutPolicy, BothOrdersAreTriedBeforeATrialCounts) {
 // Traversal ------------------------------------------------------------------------------------
 
 TEST(TraversalPolicy, AFixedModeStays) {
-  const TraversalMode mode{Packets::StreamNM, true};
+  const TraversalMode mode{Packets::Sixteen, true};
   TraversalPolicy policy(mode, 16);
   for (int i = 0; i < 1000; ++i) {
     const TraversalPlan plan = policy.plan({RayKind(i % 3), i % 12, i % spreads}, 1024);

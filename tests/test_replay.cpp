@@ -145,6 +145,7 @@ TEST(RayLog, HoldsTheSameRaysWhateverTheMode) {
   for (const auto mode :
        {TraversalMode{Packets::Sixteen, true}, TraversalMode{Packets::Four, false},
         TraversalMode{Packets::Stream1M, false}}) {
+    if (index(mode) >= traversal_modes) continue;
     EXPECT_EQ(log_of(mode).values, expected.values) << to_string(mode);
   }
   EXPECT_EQ(log_of(std::nullopt).values, expected.values);

@@ -151,9 +151,9 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
       ->capture_default_str();
   add("--traversal", options.traversal, "MODE",
       "How rays go through Embree: single, packet4, packet8, packet16,\n"
-      "stream1m or streamnm, with -coherent behind it for Embree's coherent\n"
-      "flag, or auto: measured while rendering, by kind of ray and bounce.\n"
-      "The image is the same")
+      "stream1m or streamnm (Embree 3 only), with -coherent behind it for\n"
+      "Embree's coherent flag, or auto: measured while rendering, by kind\n"
+      "of ray and bounce. The image is the same")
       ->capture_default_str();
   command
       .add_flag("--general", options.general,

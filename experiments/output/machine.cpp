@@ -1,6 +1,7 @@
 #include "experiments/output/machine.h"
 
-#include <embree3/rtcore_config.h>
+#include "core/embree.h"
+
 #include <fmt/format.h>
 #include <sched.h>
 #include <sys/resource.h>
