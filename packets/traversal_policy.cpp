@@ -15,21 +15,34 @@ constexpr TraversalMode best_first[] = {
     {Packets::StreamNM, true}, {Packets::Sixteen, false},  {Packets::Stream1M, false},
     {Packets::Four, false},    {Packets::StreamNM, false}, {Packets::Single, false},
     {Packets::Four, true},     {Packets::Stream1M, true}};
-constexpr int alternatives = has_streams ? 11 : 7;
-constexpr auto mode_order = [] {
-  std::array<std::uint8_t, alternatives> order{};
-  int n = 0;
+constexpr int flags_off = has_streams ? 6 : 4, alternatives = has_streams ? 11 : 7;
+
+template <int N>
+constexpr auto order_of(bool with_coherent) {
+  std::array<std::uint8_t, N> order{};
+  std::size_t n = 0;
   for (const TraversalMode mode : best_first) {
-    if (index(mode) < traversal_modes) order[std::size_t(n++)] = std::uint8_t(index(mode));
+    if (index(mode) >= traversal_modes || (mode.coherent && !with_coherent)) continue;
+    order[n++] = std::uint8_t(index(mode));
   }
   return order;
-}();
+}
+constexpr auto all_modes = order_of<alternatives>(true);
+// Rays in all directions take twice as long with the flag: not even worth trials.
+constexpr auto incoherent_modes = order_of<flags_off>(false);
 
 Packets packets_of(int width) {
   return width == 16  ? Packets::Sixteen
          : width == 8 ? Packets::Eight
          : width == 4 ? Packets::Four
                       : Packets::Single;
+}
+
+// What is best most often, before anything is measured.
+TraversalMode first_mode(int width, bool shadow, int spread) {
+  if (width == 1) return {Packets::Single, false};
+  if (has_streams && shadow && spread > 0) return {Packets::Stream1M, false};
+  return {packets_of(width), spread == 0};
 }
 
 }  // namespace
@@ -39,10 +52,15 @@ int spread_class(float cosine) {
 }
 
 TraversalPolicy::TraversalPolicy(std::optional<TraversalMode> fixed, int width) : fixed_(fixed) {
-  const Packets packets = packets_of(width);
   for (int i = 0; i < 2 * bounces * spreads; ++i) {
-    const bool coherent = i % spreads == 0 && width > 1;
-    choices_.emplace_back(index({packets, coherent}), mode_order, mode_spacing);
+    const int spread = i % spreads;
+    const bool shadow = i >= bounces * spreads;
+    const TraversalMode first = first_mode(width, shadow, spread);
+    if (spread < spreads - 1) {
+      choices_.emplace_back(index(first), all_modes, mode_spacing);
+    } else {
+      choices_.emplace_back(index(first), incoherent_modes, mode_spacing);
+    }
   }
 }
 

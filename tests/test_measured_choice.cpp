@@ -253,7 +253,10 @@ TEST(TraversalPolicy, BeginsWithPacketsOfTheWidthCoherentOnesForParallelRays) {
     TraversalPolicy policy({}, width);
     for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
       for (int spread = 0; spread < spreads; ++spread) {
-        const TraversalMode expected{packets, spread == 0 && width > 1};
+        TraversalMode expected{packets, spread == 0 && width > 1};
+        if (has_streams && kind == RayKind::Shadow && spread > 0 && width > 1) {
+          expected = {Packets::Stream1M, false};
+        }
         EXPECT_EQ(policy.plan({kind, 0, spread}, 1024).mode, expected);
       }
     }
@@ -297,8 +300,28 @@ TEST(TraversalPolicy, LearnsByClass) {
   EXPECT_EQ(policy.plan({RayKind::Bounce, 3, 2}, 512).mode, single);
   const TraversalMode untouched{Packets::Sixteen, false};
   EXPECT_EQ(policy.plan({RayKind::Bounce, 2, 2}, 512).mode, untouched);
-  EXPECT_EQ(policy.plan({RayKind::Shadow, 2, 2}, 512).mode, untouched);
-  EXPECT_EQ(policy.plan({RayKind::Shadow, 3, 3}, 512).mode, untouched);
+  EXPECT_EQ(policy.plan({RayKind::Bounce, 3, 1}, 512).mode, untouched);
+  const TraversalMode untouched_shadow =
+      TraversalPolicy({}, 16).plan({RayKind::Shadow, 0, 2}, 1).mode;
+  EXPECT_EQ(policy.plan({RayKind::Shadow, 2, 2}, 512).mode, untouched_shadow);
+  EXPECT_EQ(policy.plan({RayKind::Shadow, 3, 1}, 512).mode, untouched_shadow);
+}
+
+TEST(TraversalPolicy, NeverTriesTheFlagOnRaysInAllDirections) {
+  for (const int spread : {spreads - 2, spreads - 1}) {
+    TraversalPolicy policy({}, 8);
+    const QueueClass queue{RayKind::Bounce, 1, spread};
+    int coherent = 0, trials = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const TraversalPlan plan = policy.plan(queue, 512);
+      if (!plan.trial) continue;
+      ++trials;
+      coherent += plan.trial->coherent;
+      policy.record(queue, *plan.trial, 1.2, 1.0);
+    }
+    EXPECT_GT(trials, 50);
+    EXPECT_EQ(coherent > 0, spread < spreads - 1);
+  }
 }
 
 }  // namespace
