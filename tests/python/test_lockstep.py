@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+import coherence
 import figure
 import lockstep
 import numpy
@@ -277,6 +278,28 @@ class Profiles(WithFolder):
         # What the program prints is in millions, with three decimals or so.
         for row in self.profile.renders:
             self.assertIn(f"{row['paths_per_cpu_second'] / 1e6:.3f}", self.printed)
+
+    def test_coherence(self):
+        rates = {}
+        for row in self.profile.speeds:
+            if (row["kind"], row["bounce"]) == ("bounce", 1) and row["mode"] != "auto":
+                rates.setdefault(str(row["weight"]), {})[str(row["mode"])] = row["rays_per_cpu_second"]
+        shared, own = rates["0"], rates["1"]
+        fewest, coherence.FEWEST_RAYS = coherence.FEWEST_RAYS, 1
+        self.addCleanup(setattr, coherence, "FEWEST_RAYS", fewest)
+        self.assertEqual(coherence.weights(self.profile), ["0", "1"])
+        locality = coherence.ratio(self.profile, "bounce", 1, single=True)
+        self.assertAlmostEqual(locality, shared["single"] / own["single"])
+        both = coherence.ratio(self.profile, "bounce", 1, single=False)
+        self.assertAlmostEqual(both, max(shared.values()) / max(own.values()))
+        (row,) = coherence.table([self.profile]).split("\n")[2:]
+        simd = [max(modes.values()) / modes["single"] for modes in (shared, own)]
+        self.assertIn(f"| {locality:.2f} | {simd[0]:.2f}, {simd[1]:.2f} |", row)
+        (axes,) = coherence.draw([self.profile, self.profile]).axes
+        means = {line.get_label(): line.get_ydata() for line in axes.lines}
+        place = coherence.CLASSES.index(("bounce", 1))
+        self.assertAlmostEqual(means["single rays: locality"][place], locality)
+        self.assertAlmostEqual(means["best mode: locality and SIMD"][place], both)
 
     def test_errors(self):
         (self.out / "renders.csv").rename(self.out / "gone.csv")
