@@ -1,10 +1,11 @@
-"""How much faster rays are at the smallest weight of profiles than at the largest, by kind and bounce.
+"""How much faster rays are at a profile's smallest weight than at its largest, by kind and bounce.
 
     python3 python/coherence.py out/profile-* -o coherence.svg
 
-Prints a table for docs/coherence.md, a row for each profile, and draws two ratios for each kind of ray:
-single rays over single rays, which is locality, and the best fixed mode over the best fixed mode, which is
-locality times what packets add. Small dots are scenes, large ones their geometric means. Needs numpy and matplotlib.
+Prints a table for docs/coherence.md, a row for each profile, and draws two ratios for each kind of
+ray: single rays over single rays, which is locality, and the best fixed mode over the best fixed
+mode, which is locality times what packets add. Small dots are scenes, large ones their geometric
+means. Needs numpy and matplotlib.
 """
 
 import argparse
@@ -87,13 +88,18 @@ def draw(profiles):
     """Returns a matplotlib Figure."""
     figure = Figure(figsize=(7.6, 3.8), layout="constrained")
     axes = figure.subplots()
-    looks = (("single rays: locality", True, "o", "#3f90da"), ("best mode: locality and SIMD", False, "s", "#bd1f01"))
+    looks = (
+        ("single rays: locality", True, "o", "#3f90da"),
+        ("best mode: locality and SIMD", False, "s", "#bd1f01"),
+    )
     for label, single, marker, colour in looks:
         values = [[ratio(p, *c, single) for p in profiles] for c in CLASSES]
         places = range(len(CLASSES))
         for place, column in zip(places, values):
             shift = -0.08 if single else 0.08
-            axes.plot([place + shift] * len(column), column, marker, ms=3, alpha=0.4, mew=0, color=colour)
+            axes.plot(
+                [place + shift] * len(column), column, marker, ms=3, alpha=0.4, mew=0, color=colour
+            )
         means = [geometric_mean(column) for column in values]
         axes.plot(places, means, marker=marker, ms=7, ls="none", color=colour, label=label)
     names = [kind if kind == "camera" else f"{kind}\n{bounce}" for kind, bounce in CLASSES]
@@ -112,7 +118,9 @@ def draw(profiles):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Speed of coherent rays over that of independent ones.")
+    parser = argparse.ArgumentParser(
+        description="Speed of coherent rays over that of independent ones."
+    )
     parser.add_argument("directory", nargs="+", help="the DIRs of `lockstep profile -o DIR`")
     parser.add_argument("-o", "--output", required=True, help="file to write: .pdf, .png or .svg")
     options = parser.parse_args()
@@ -122,7 +130,9 @@ def main():
         profiles = [lockstep.load_profile(directory) for directory in options.directory]
         for profile in profiles:
             if weights(profile) != weights(profiles[0]):
-                raise lockstep.LockstepError(f"{profile.directory}: has other weights than the first")
+                raise lockstep.LockstepError(
+                    f"{profile.directory}: has other weights than the first"
+                )
         print(table(profiles))
         # The same profiles give the same file.
         matplotlib.rcParams["svg.hashsalt"] = "lockstep"

@@ -3,10 +3,10 @@
     python3 python/figure.py out/compare -o figure.pdf
     python3 python/figure.py out/compare -o figure.png --metric rmse --across spp
 
-Or from a notebook: figure.draw(lockstep.load_comparison("out/compare")). One plot for each scene and
-depth: the median over seeds (line and marker), 5 to 95 % (band), single renders (dots); colours,
-dashes and markers are those of the report page. Needs numpy and matplotlib (Debian: python3-numpy,
-python3-matplotlib).
+Or from a notebook: figure.draw(lockstep.load_comparison("out/compare")). One plot for each scene
+and depth: the median over seeds (line and marker), 5 to 95 % (band), single renders (dots);
+colours, dashes and markers are those of the report page. Needs numpy and matplotlib (Debian:
+python3-numpy, python3-matplotlib).
 """
 
 import argparse
@@ -32,8 +32,8 @@ HEADINGS = {  # the page's; other metrics go by their names
     "low_pass_rmse": "low-pass RMSE",
 }
 NOT_METRICS = set(
-    "scene sampler seed spp cpu_seconds wall_seconds depth pilot_spp mean_weight lanes lanes_active "
-    "nonfinite width threads".split()
+    "scene sampler seed spp cpu_seconds wall_seconds depth pilot_spp mean_weight lanes "
+    "lanes_active nonfinite width threads".split()
 )
 HIGHER_IS_BETTER = {"ssim"}  # ends at 1: no logarithm makes sense of it
 

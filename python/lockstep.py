@@ -7,8 +7,8 @@
     comparison = lockstep.load_comparison("out/compare")
     comparison.errors["flip_ldr"]                    # a column of errors.csv
 
-Needs numpy, and for images OpenImageIO (Debian: python3-numpy, python3-openimageio). Whatever cannot
-be read is a LockstepError of one line: which file, what is wrong with it, what to do.
+Needs Python 3.10, numpy, and for images OpenImageIO (Debian: python3-numpy, python3-openimageio).
+What cannot be read is a LockstepError of one line: which file, what is wrong with it, what to do.
 """
 
 import csv

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs a file of unittest with the first Python that has the modules, or, where none has them all,
-# with the first that has those before `--`; says that it is skipped (status 77) where there is none.
+# with the first that has those before `--`; says that it is skipped (status 77) where none is.
 # LOCKSTEP_PYTHON_TESTS=required makes a missing module a failure.
 # Usage: python_test.sh PROGRAM FILE [MODULE...] [-- MODULE...]
 set -uo pipefail
@@ -24,7 +24,7 @@ run_with() {
   for python in python3 /usr/bin/python3; do
     if has "$python" "$@"; then
       export LOCKSTEP_PROGRAM=$program PYTHONPATH=$source/../../python PYTHONDONTWRITEBYTECODE=1
-      exec timeout 300 "$python" "$file" -v
+      exec timeout 900 "$python" "$file" -v
     fi
   done
 }

@@ -1,8 +1,8 @@
 """What the documents say can be done: their links, options, commands and listings.
 
-Blocks marked ```sh are run, each page's in one folder and in order; a ```text block behind one is its
-output, whose lines must come up in what is printed, numbers aside. In other blocks the options of every
-command must exist.
+Blocks marked ```sh are run, each page's in one folder and in order; a ```text block behind one is
+its output, whose lines must come up in what is printed, numbers aside. In all blocks the options of
+every command must exist.
 """
 
 import importlib.util
@@ -103,7 +103,9 @@ class CommandLines(unittest.TestCase):
             known[words[0]] = help_of(words[0])
         options = [word.split("=")[0] for word in words if re.match(r"--?[a-z]", word)]
         for option in options:
-            self.assertRegex(known[words[0]], rf"(^|[\s,]){option}[\s,=\[]", f"{page.name}: {words}")
+            self.assertRegex(
+                known[words[0]], rf"(^|[\s,]){option}[\s,=\[]", f"{page.name}: {words}"
+            )
         return len(options)
 
 
@@ -171,7 +173,9 @@ add_tests()
 
 class Tutorial(unittest.TestCase):
     def test_listing_is_the_file_that_is_compiled(self):
-        listings = [text for language, text in blocks(SOURCE / "docs/tutorial.md") if language == "cpp"]
+        listings = [
+            text for language, text in blocks(SOURCE / "docs/tutorial.md") if language == "cpp"
+        ]
         self.assertIn(text_of(SOURCE / "docs/examples/golden.h"), listings)
         compiled = text_of(SOURCE / "tests/test_example_sequence.cpp")
         self.assertIn('#include "docs/examples/golden.h"', compiled)
@@ -180,7 +184,9 @@ class Tutorial(unittest.TestCase):
 @unittest.skipUnless(HAS_MODULES, "numpy, matplotlib or OpenImageIO is missing")
 class Python(unittest.TestCase):
     def test_example_runs(self):
-        (example,) = (text for language, text in blocks(SOURCE / "docs/python.md") if language == "python")
+        (example,) = (
+            text for language, text in blocks(SOURCE / "docs/python.md") if language == "python"
+        )
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run(
                 [PROGRAM, "compare", "cornell", "--samplers", "random,owen", "--spp", "16"]
@@ -192,7 +198,11 @@ class Python(unittest.TestCase):
                 timeout=120,
             )
             done = subprocess.run(
-                [sys.executable, "-c", example], cwd=folder, capture_output=True, text=True, timeout=60
+                [sys.executable, "-c", example],
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                timeout=60,
             )
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, r"(?m)^random 0\.\d+ ")

@@ -188,7 +188,9 @@ class Comparisons(WithFolder):
         self.assertIsNone(comparison.summary)
         rows = len(comparison.errors)
         self.assertTrue(10 < rows < len(self.comparison.errors), rows)
-        self.assertEqual(list(comparison.errors["rmse"]), list(self.comparison.errors["rmse"][:rows]))
+        self.assertEqual(
+            list(comparison.errors["rmse"]), list(self.comparison.errors["rmse"][:rows])
+        )
 
     def test_errors(self):
         self.fails("nosuch: no such folder; give the DIR", lockstep.load_comparison, "nosuch")
@@ -197,7 +199,11 @@ class Comparisons(WithFolder):
         for name, spoil, message in (
             ("summary.json", lambda text: text[:-20], r"summary.json:\d+: not JSON"),
             ("journal.jsonl", lambda text: text.replace("{", "", 1), "journal.jsonl:1: not JSON"),
-            ("errors.csv", lambda text: text.replace(",1,4,", ",1,4", 1), r"errors.csv:\d+: 24 fields"),
+            (
+                "errors.csv",
+                lambda text: text.replace(",1,4,", ",1,4", 1),
+                r"errors.csv:\d+: 24 fields",
+            ),
             ("errors.csv", lambda text: "", "errors.csv: is empty"),
         ):
             folder = self.copy()
@@ -219,7 +225,9 @@ class Comparisons(WithFolder):
     def check_curves(self, axes, scene, across):
         curves = {line.get_label(): line for line in axes.lines if line.get_linestyle() != "None"}
         dots = [line for line in axes.lines if line.get_linestyle() == "None"]
-        self.assertEqual(sum(len(line.get_xdata()) for line in dots), len(SAMPLERS) * len(SPP) * SEEDS)
+        self.assertEqual(
+            sum(len(line.get_xdata()) for line in dots), len(SAMPLERS) * len(SPP) * SEEDS
+        )
         self.assertEqual(list(curves), SAMPLERS)
         for sampler, band in zip(scene["samplers"], axes.collections):
             line, rungs = curves[sampler["sampler"]], sampler["rungs"]
@@ -283,7 +291,9 @@ class Profiles(WithFolder):
         rates = {}
         for row in self.profile.speeds:
             if (row["kind"], row["bounce"]) == ("bounce", 1) and row["mode"] != "auto":
-                rates.setdefault(str(row["weight"]), {})[str(row["mode"])] = row["rays_per_cpu_second"]
+                rates.setdefault(str(row["weight"]), {})[str(row["mode"])] = row[
+                    "rays_per_cpu_second"
+                ]
         shared, own = rates["0"], rates["1"]
         fewest, coherence.FEWEST_RAYS = coherence.FEWEST_RAYS, 1
         self.addCleanup(setattr, coherence, "FEWEST_RAYS", fewest)
