@@ -12,7 +12,7 @@ std::vector<std::string> feature_names(FeatureMask set) {
       "distant-lights", "textured-lights", "light-choice",  "textures",
       "tangents",       "surface-maps",    "trilinear",     "opacity",
       "one-sided",      "absorption",      "filter-table",  "filter-signs",
-      "lens",           "orthographic"};
+      "lens",           "orthographic",    "compensation"};
   std::vector<std::string> result;
   for (unsigned f = 0; f < feature_count; ++f) {
     if (set >> f & 1u) result.emplace_back(names[f]);

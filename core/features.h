@@ -44,8 +44,9 @@ enum class Feature : unsigned {
   FilterSigns,  // one with negative lobes
   Lens,
   Orthographic,
+  Compensation,  // of what rough materials lose between their facets
 };
-inline constexpr unsigned feature_count = 34;
+inline constexpr unsigned feature_count = 35;
 
 using FeatureMask = std::uint64_t;
 static_assert(feature_count < 64);

@@ -312,6 +312,7 @@ SceneData view(const FlatScene& flat) {
                  flat.material_maps.data(),
                  flat.texture_bindings.data(),
                  nullptr,
+                 nullptr,
                  flat.measured.data(),
                  std::int32_t(flat.measured.size() / measured_floats)};
   d.lights = {int(flat.light_kinds.size()), flat.light_rows.data(), flat.light_cdf.data(),

@@ -47,7 +47,8 @@ struct FlatScene {
   std::vector<std::int32_t> material_kinds;
   std::vector<float> material_parameters;
   std::vector<std::int32_t> material_maps;
-  std::vector<float> measured;  // the materials' tables, one after the other
+  std::vector<float> boundary_etas;  // of the tables that the materials refer to
+  std::vector<float> measured;       // the materials' tables, one after the other
   std::vector<TextureBinding> texture_bindings;
   std::vector<FeatureMask>
       material_features;           // that hits on each material need, mixes' parts aside

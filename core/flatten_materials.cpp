@@ -1,8 +1,12 @@
+#include "core/boundary_albedo.h"
 #include "core/error.h"
 #include "core/flatten.h"
 #include "core/fresnel.h"
+#include "core/microfacet.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace lockstep {
 namespace {
@@ -118,6 +122,45 @@ FeatureMask features_of(const Material& m, const Row& r) {
          when(!m.two_sided, Feature::OneSided) | when(absorbs, Feature::Absorption);
 }
 
+bool is_bound(const Row& r, int column) {
+  return std::any_of(r.bindings.begin(), r.bindings.end(),
+                     [&](const TextureBinding& b) { return b.column == column; });
+}
+
+// True for what has facets, unless it is a mirror or clear glass all over.
+bool has_rough_facets(const Row& r) {
+  const auto rough = [&](std::size_t column) {
+    return r.parameters[column] >= smoothest_alpha || is_bound(r, int(column));
+  };
+  switch (r.kind) {
+    case MaterialKind::Conductor:
+    case MaterialKind::Dielectric:
+      return rough(6) || r.parameters[7] >= smoothest_alpha;
+    case MaterialKind::Coated:
+      return rough(6);
+    case MaterialKind::Principled:
+      return rough(4);
+    default:
+      return false;
+  }
+}
+
+// The index of refraction whose boundary table kernels look up for hits on the material.
+std::optional<float> boundary_index(const Row& r) {
+  const std::vector<float>& p = r.parameters;
+  if (r.kind == MaterialKind::Coated) return p[7];
+  if (r.kind == MaterialKind::Dielectric && has_rough_facets(r) && p[9] == 0.0f) return p[8];
+  if (r.kind == MaterialKind::Principled && (p[7] > 0.0f || is_bound(r, 7))) return p[5];
+  return std::nullopt;
+}
+
+// Prepares what puts back what facets lose. `r` is as long as rows are.
+void compensate(Row& r, FlatScene& flat) {
+  const std::optional<float> index = boundary_index(r);
+  if (!index) return;
+  r.parameters[boundary_column] = float(boundary_table_for(*index, flat.boundary_etas));
+}
+
 void append_maps(const Material& material, const Row& r, FlatScene& flat) {
   const auto first = std::int32_t(flat.texture_bindings.size());
   for (const TextureBinding& b : r.bindings) append_binding(flat, b);
@@ -134,11 +177,14 @@ void append_maps(const Material& material, const Row& r, FlatScene& flat) {
                             {first, std::int32_t(r.bindings.size()), normal, bump});
 }
 
-void append_material(const Material& material, FlatScene& flat) {
+void append_material(const Material& material, bool compensated, FlatScene& flat) {
   Row r = std::visit([](const auto& m) { return row(m); }, material.model);
   append_maps(material, r, flat);
   r.parameters.resize(material_stride, 0.0f);
-  flat.material_features.push_back(features_of(material, r));
+  if (compensated) compensate(r, flat);
+  flat.material_features.push_back(
+      features_of(material, r) |
+      (compensated && has_rough_facets(r) ? bit(Feature::Compensation) : 0u));
   flat.material_kinds.push_back(std::int32_t(r.kind));
   flat.material_parameters.insert(flat.material_parameters.end(), r.parameters.begin(),
                                   r.parameters.end());
@@ -213,7 +259,9 @@ TextureBinding binding_of(const FloatInput& input, int column) {
 void flatten_materials(const SceneDescription& description, FlatScene& flat) {
   MixCheck mixes(description.materials);
   for (std::size_t i = 0; i < description.materials.size(); ++i) mixes.check(int(i));
-  for (const Material& m : description.materials) append_material(m, flat);
+  for (const Material& m : description.materials) {
+    append_material(m, description.compensate_microfacets, flat);
+  }
   append_measured(description, flat);
 }
 

@@ -19,21 +19,32 @@ std::vector<float> make_ggx_albedo();
 
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
-// E for wo under cos_o in [0, 1], interpolated; error below 0.01 for cos_o above 0.01, else 0.03.
+// The cell that holds a coordinate in [0, ggx_albedo_cells].
 template <class V>
-LOCKSTEP_INLINE V ggx_albedo(const float* table, V cos_o, V alpha) {
+LOCKSTEP_INLINE V albedo_cell(V x) {
+  return clamp(floor(x), V(0.0f), V(ggx_albedo_cells - 1.0f));
+}
+
+// Interpolated in the table that begins at row `first`.
+template <class V>
+LOCKSTEP_INLINE V look_up_albedo(const float* table, IntOf<V> first, V cos_o, V alpha) {
   using I = IntOf<V>;
   constexpr float cells = ggx_albedo_cells;
-  const auto cell = [](V x) LOCKSTEP_LAMBDA { return clamp(floor(x), V(0.0f), V(cells - 1.0f)); };
   const V x = sqrt(clamp(cos_o, V(0.0f), V(1.0f))) * V(cells);
   const V y = sqrt(clamp(alpha, V(0.0f), V(1.0f))) * V(cells);
-  const V column = cell(x), row = cell(y);
-  const I at = to_int(row) * I(ggx_albedo_cells) + to_int(column);
+  const V column = albedo_cell(x), row = albedo_cell(y);
+  const I at = first + to_int(row) * I(ggx_albedo_cells) + to_int(column);
   const auto corners = gather_rows(table, at * I(4));
   const V s = x - column, t = y - row;
   const V low = fma(s, corners.y - corners.x, corners.x);
   const V high = fma(s, corners.w - corners.z, corners.z);
   return fma(t, high - low, low);
+}
+
+// E for wo under cos_o in [0, 1], interpolated; error below 0.01 for cos_o above 0.01, else 0.03.
+template <class V>
+LOCKSTEP_INLINE V ggx_albedo(const float* table, V cos_o, V alpha) {
+  return look_up_albedo(table, IntOf<V>(0), cos_o, alpha);
 }
 
 // Light lost / light reflected, (1 - E) / E, of a white metal seen under cos_o: the factor of

@@ -1,5 +1,6 @@
 #include "core/scene.h"
 
+#include "core/boundary_albedo.h"
 #include "core/coincidence.h"
 #include "core/environment_map.h"
 #include "core/error.h"
@@ -122,7 +123,8 @@ struct Scene::Storage {
   TextureStore textures;
   TextureTable texture_table;
   std::optional<EnvironmentMap> environment_map;
-  std::vector<float> ggx_albedo;  // see core/ggx_albedo.h
+  std::vector<float> ggx_albedo;       // see core/ggx_albedo.h
+  std::vector<float> boundary_albedo;  // see core/boundary_albedo.h
   FlatScene flat;
   std::vector<Holes> holes;  // per geometry
   DeviceHandle device;
@@ -138,7 +140,6 @@ struct Scene::Storage {
 
   std::uint64_t fingerprint_of_all() const {
     std::uint64_t all = lockstep::fingerprint(flat) ^ textures.fingerprint() * 3u;
-    if (!ggx_albedo.empty()) all ^= 7u;
     if (environment_map) all ^= environment_map->fingerprint() * 5u;
     return all;
   }
@@ -186,8 +187,11 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
     s.environment_map.emplace(*description.environment);
     environment_radiance = s.environment_map->mean_radiance();
   }
-  if (description.compensate_microfacets) s.ggx_albedo = make_ggx_albedo();
   s.flat = flatten(description, environment_radiance, s.texture_table);
+  if (s.flat.features & bit(Feature::Compensation)) {
+    s.ggx_albedo = make_ggx_albedo();
+    s.boundary_albedo = make_boundary_albedo(s.flat.boundary_etas);
+  }
   description.shapes.clear();
   description.objects.clear();
   description.textures.clear();
@@ -207,6 +211,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   s.data.embree_scene = s.scene.get();
   s.data.textures = s.texture_table;
   if (!s.ggx_albedo.empty()) s.data.materials.ggx_albedo = s.ggx_albedo.data();
+  if (!s.boundary_albedo.empty()) s.data.materials.boundary_albedo = s.boundary_albedo.data();
   if (s.environment_map) s.data.environment_map = s.environment_map->view();
 }
 

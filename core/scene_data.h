@@ -26,6 +26,8 @@ namespace lockstep {
 //                        8 coat, 9 coat alpha, 10 thin
 //   Measured             0 number of its table
 //   Mix                  0 first material, 1 second, 2 share of the second
+// In each, column boundary_column is the number of its table of MaterialTable::boundary_albedo; 0
+// where it has none.
 // Mixes never reach shading: each path goes on with one of their parts.
 enum class MaterialKind : std::int32_t {
   Diffuse,
@@ -40,6 +42,7 @@ enum class MaterialKind : std::int32_t {
 };
 inline constexpr int material_kinds = 9;
 inline constexpr int material_stride = 16;
+inline constexpr int boundary_column = 15;
 
 constexpr Feature material_feature(MaterialKind kind) {
   return Feature(unsigned(Feature::Diffuse) + unsigned(kind));
@@ -65,8 +68,9 @@ struct MaterialTable {
   const std::int32_t* kinds = nullptr;  // MaterialKind
   const std::int32_t* maps = nullptr;
   const TextureBinding* bindings = nullptr;
-  const float* ggx_albedo = nullptr;  // core/ggx_albedo.h; none: single scattering only
-  const float* measured = nullptr;    // measured_count tables of core/measured_table.h
+  const float* ggx_albedo = nullptr;       // core/ggx_albedo.h; none: single scattering only
+  const float* boundary_albedo = nullptr;  // tables of core/boundary_albedo.h; as above
+  const float* measured = nullptr;         // measured_count tables of core/measured_table.h
   std::int32_t measured_count = 0;
 };
 

@@ -77,8 +77,8 @@ struct SceneDescription {
   CameraDescription camera;
   FilmDescription film;
   RenderDefaults defaults;
-  bool compensate_microfacets = false;  // light that metals lose between facets is put back
-  std::vector<std::string> warnings;  // one line each, "file:line: what was not understood"
+  bool compensate_microfacets = false;  // light lost between facets is put back
+  std::vector<std::string> warnings;    // one line each, "file:line: what was not understood"
 };
 
 }  // namespace lockstep

@@ -36,19 +36,56 @@ constexpr bool has_lobes(MaterialKind kind) {
          kind == MaterialKind::Measured;
 }
 
-// What single scattering loses, where it is to be put back.
+// Number of the lanes' boundary tables.
+template <class I>
+LOCKSTEP_INLINE I boundary_table(const MaterialTable& table, I rows) {
+  return to_int(gather(table.parameters + boundary_column, rows * I(material_stride)));
+}
+
+// What single scattering between facets loses is put back. `rows` are the lanes' in `table`.
 template <class V, class Bsdf>
-LOCKSTEP_INLINE void compensate(const SceneData&, const Vec3<V>&, Bsdf&) {}
+LOCKSTEP_INLINE void compensate(const MaterialTable&, IntOf<V>, const Surface<V>&, Bsdf&) {}
 template <class V>
-LOCKSTEP_INLINE void compensate(const SceneData& scene, const Vec3<V>& wo, MetalBsdf<V>& bsdf) {
-  const float* table = scene.materials.ggx_albedo;
-  if (table) bsdf.lost = ggx_loss(table, wo.z, bsdf.conductor.ggx.alpha);
+LOCKSTEP_INLINE void compensate(const MaterialTable& table, IntOf<V>, const Surface<V>& surface,
+                                MetalBsdf<V>& bsdf) {
+  bsdf.lost = ggx_loss(table.ggx_albedo, surface.wo.z, bsdf.conductor.ggx.alpha);
 }
 template <class V>
-LOCKSTEP_INLINE void compensate(const SceneData& scene, const Vec3<V>& wo,
-                                PrincipledBsdf<V>& bsdf) {
-  const float* table = scene.materials.ggx_albedo;
-  if (table) bsdf.lost = ggx_loss(table, wo.z, Vec2<V>(bsdf.alpha));
+LOCKSTEP_INLINE void compensate(const MaterialTable& table, IntOf<V> rows,
+                                const Surface<V>& surface, CoatedBsdf<V>& bsdf) {
+  const V alpha = bsdf.ggx.alpha.x;
+  bsdf.boundary_albedo = table.boundary_albedo;
+  bsdf.table = boundary_table(table, rows);
+  bsdf.lost =
+      boundary_loss(table.boundary_albedo, bsdf.table, MaskOf<V>(false), surface.wo.z, alpha);
+  bsdf.inner_reflectance =
+      bsdf.inner_reflectance + boundary_inner_difference(table.boundary_albedo, bsdf.table, alpha);
+}
+// Facets of a sheet mirror what passes: they lose as metal does.
+template <class V>
+LOCKSTEP_INLINE V transparent_loss(const MaterialTable& table, IntOf<V> rows,
+                                   const Surface<V>& surface, Vec2<V> alpha, MaskOf<V> thin) {
+  const V cos_o = surface.wo.z;
+  V lost(0.0f);
+  if (any(thin)) lost = ggx_loss(table.ggx_albedo, cos_o, alpha);
+  if (all(thin) || !table.boundary_albedo) return lost;
+  return select(thin, lost,
+                boundary_loss(table.boundary_albedo, boundary_table(table, rows), !surface.outside,
+                              cos_o, sqrt(alpha.x * alpha.y)));
+}
+template <class V>
+LOCKSTEP_INLINE void compensate(const MaterialTable& table, IntOf<V> rows,
+                                const Surface<V>& surface, DielectricBsdf<V>& bsdf) {
+  bsdf.lost = select(is_delta(bsdf), V(0.0f),
+                     transparent_loss(table, rows, surface, bsdf.ggx.alpha, bsdf.thin));
+}
+template <class V>
+LOCKSTEP_INLINE void compensate(const MaterialTable& table, IntOf<V> rows,
+                                const Surface<V>& surface, PrincipledBsdf<V>& bsdf) {
+  const Vec2<V> alpha(bsdf.alpha);
+  bsdf.lost = ggx_loss(table.ggx_albedo, surface.wo.z, alpha);
+  if (none(bsdf.transmission > V(0.0f))) return;
+  bsdf.lost_by_clear = transparent_loss(table, rows, surface, alpha, bsdf.thin);
 }
 
 // True where no light can be sampled: all lanes are mirrors or clear glass.
@@ -78,7 +115,7 @@ LOCKSTEP_INLINE auto load_bsdf_at(const SceneData& scene, const Surface<Float<W>
     row = lane_indices<W>();
   }
   auto bsdf = load_bsdf<K>(table, row);
-  compensate(scene, surface.wo, bsdf);
+  if (needs<F>(scene, Feature::Compensation)) compensate(table, row, surface, bsdf);
   return bsdf;
 }
 

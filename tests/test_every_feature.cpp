@@ -186,6 +186,7 @@ class EveryFeature : public TestWithImages {
     d.film.filter.kind = PixelFilter::Kind::Mitchell;
     d.film.filter.radius = glm::vec2(1.5f);
     look_straight(d, {0, 3, 8}, {0, 1.2f, 0}, 4.5f, 23, 17);
+    d.compensate_microfacets = map_and_lens;
     if (map_and_lens) {
       d.camera.projection = CameraDescription::Projection::Perspective;
       d.camera.fov_degrees = 33.0f;
@@ -243,7 +244,7 @@ TEST_F(EveryFeature, IsInTheScene) {
   EXPECT_EQ(feature_names(all_features & ~map),
             feature_names(feature_set(Environment, Orthographic)));
   EXPECT_EQ(feature_names(all_features & ~constant),
-            feature_names(feature_set(EnvironmentMap, Lens)));
+            feature_names(feature_set(EnvironmentMap, Lens, Compensation)));
 }
 
 TEST_F(EveryFeature, GivesTheSameBytesForEveryWidthLayoutAndThreadCount) {

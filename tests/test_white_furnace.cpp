@@ -87,6 +87,44 @@ TEST_F(WhiteFurnace, OfRoughMetalIsWholeWhereCompensated) {
   }
 }
 
+// The same of rough glass on the way in and out, of a sheet, and of a coat and what is under it.
+TEST_F(WhiteFurnace, OfRoughGlassAndCoatsIsWholeWhereCompensated) {
+  DielectricMaterial glass, sheet;
+  glass.alpha = sheet.alpha = glm::vec2(0.5f);
+  sheet.thin = true;
+  CoatedMaterial coat;
+  coat.diffuse = glm::vec3(1.0f);
+  coat.alpha = 0.5f;
+  PrincipledMaterial clear;
+  clear.alpha = 0.5f;
+  clear.transmission = 1.0f;
+  for (const Material& material :
+       {Material(glass), Material(sheet), Material(coat), Material(clear)}) {
+    SCOPED_TRACE(material.model.index());
+    for (const bool compensated : {false, true}) {
+      SceneDescription d = description(material, false, false);
+      d.compensate_microfacets = compensated;
+      const Observed o = observe(build(d), {.spp = 64, .depth = 128, .seeds = 4});
+      if (compensated) {
+        EXPECT_NEAR(o.mean.mean, 1.0, 0.01);
+      } else {
+        EXPECT_LT(o.mean.mean, 0.97);
+      }
+    }
+  }
+}
+
+// Smooth surfaces lose nothing: the option leaves the scene as it is.
+TEST_F(WhiteFurnace, OfSmoothGlassNeedsNoCompensation) {
+  SceneDescription d = description(DielectricMaterial{}, false, false);
+  const std::uint64_t without = build(d).fingerprint();
+  d.compensate_microfacets = true;
+  const Scene scene = build(d);
+  EXPECT_EQ(scene.fingerprint(), without);
+  EXPECT_FALSE(scene.features() & bit(Feature::Compensation));
+  EXPECT_EQ(scene.data().materials.boundary_albedo, nullptr);
+}
+
 // Every sample that leaves has weight 1, and total reflection keeps some in a polyhedron for long.
 TEST_F(WhiteFurnace, OfSmoothGlass) {
   DielectricMaterial glass;

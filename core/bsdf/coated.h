@@ -5,8 +5,11 @@
 // inner diffuse reflectance; 1/eta^2 is the change of solid angle at the interface. A base of
 // albedo 1 then returns all that enters. A coat of some thickness dims what crosses it, and r; and
 // only the first reflections by the base may count: pbrt-v4's walk between the layers, summed up.
+//
+// Where the coat's single-scattering loss is put back, the base sees what the rough coat passes.
 #pragma once
 
+#include "core/boundary_albedo.h"
 #include "core/bsdf.h"
 #include "core/fresnel.h"
 #include "core/microfacet.h"
@@ -25,6 +28,9 @@ struct CoatedBsdf {
   V inner_reflectance;  // of diffuse light inside, at the coat
   V thickness;
   V reflections;  // by the base that count; 0: all
+  V lost{0.0f};   // what boundary_loss() gives for wo; 0: single scattering only
+  const float* boundary_albedo = nullptr;  // see core/boundary_albedo.h; none: as if smooth
+  IntOf<V> table{0};                       // of these the lanes' own
 };
 
 template <class I>
@@ -35,10 +41,25 @@ LOCKSTEP_INLINE CoatedBsdf<FloatOf<I>> load_coated(const MaterialTable& t, I ind
   return {{a.x, a.y, a.z}, {a.w, b.x, b.y}, {{alpha, alpha}}, b.w, c.x, c.y, c.z, c.w};
 }
 
+// By the coat.
+template <class V>
+LOCKSTEP_INLINE V reflectance_at(const CoatedBsdf<V>& bsdf, V cos_i) {
+  if (!bsdf.boundary_albedo) return fresnel_dielectric(cos_i, bsdf.eta);
+  return boundary_reflectance(bsdf.boundary_albedo, bsdf.table, cos_i, bsdf.ggx.alpha.x);
+}
+
+// Of the coat's reflection, with light of further bounces between facets, which takes the colour
+// once more (Turquin 2019, eq. 16).
+template <class V>
+LOCKSTEP_INLINE Vec3<V> coat_scale(const CoatedBsdf<V>& bsdf) {
+  if (none(bsdf.lost > V(0.0f))) return bsdf.specular;
+  return bsdf.specular * fma(bsdf.lost, bsdf.specular, Vec3<V>(V(1.0f)));
+}
+
 // Share of light that gets through the coat at this angle; 1 where coat and base are just added.
 template <class V>
 LOCKSTEP_INLINE V transmittance(const CoatedBsdf<V>& bsdf, V cos_i) {
-  const V entered = V(1.0f) - bsdf.layered * fresnel_dielectric(cos_i, bsdf.eta);
+  const V entered = V(1.0f) - bsdf.layered * reflectance_at(bsdf, cos_i);
   if (none(bsdf.thickness > V(0.0f))) return entered;
   const V sin2 = fma(-cos_i, cos_i, V(1.0f)) / (bsdf.eta * bsdf.eta);
   const V cos_inside = sqrt(max(V(1.0f) - sin2, V(1e-6f)));
@@ -88,7 +109,7 @@ LOCKSTEP_INLINE BsdfValue<V> eval(const CoatedBsdf<V>& bsdf, const Vec3<V>& wo, 
   const V base_pdf = cosine_hemisphere_pdf(wi.z);
   const V base = base_pdf * transmittance(bsdf, wi.z);
   const V p = coat_probability(bsdf, wo.z);
-  return {bsdf.specular * (f * d * bsdf.ggx.g2(wo, wi)) + base_reflectance(bsdf, wo.z) * base,
+  return {coat_scale(bsdf) * (f * d * bsdf.ggx.g2(wo, wi)) + base_reflectance(bsdf, wo.z) * base,
           fma(p, d * bsdf.ggx.g1(wo), (V(1.0f) - p) * base_pdf)};
 }
 

@@ -21,6 +21,7 @@ struct DielectricBsdf {
   Ggx<V> ggx;  // alpha below smoothest_alpha along both axes: a delta lane
   V eta;
   MaskOf<V> thin;  // both faces of a sheet at once: what passes goes on as it came
+  V lost{0.0f};    // what boundary_loss() gives for wo; 0: single scattering only
 };
 
 template <class V>
@@ -130,12 +131,21 @@ LOCKSTEP_INLINE V reflection_probability(const DielectricBsdf<V>& bsdf, V reflec
   return r / max(r + t, V(1e-20f));
 }
 
+// Of light that goes that way, with that of further bounces between facets, which takes the colour
+// once more (Turquin 2019, eq. 16). Not reciprocal: it depends on wo alone.
+template <class V>
+LOCKSTEP_INLINE Vec3<V> compensated(const DielectricBsdf<V>& bsdf, const Vec3<V>& color) {
+  if (none(bsdf.lost > V(0.0f))) return color;
+  return color * fma(bsdf.lost, color, Vec3<V>(V(1.0f)));
+}
+
 // What such a facet reflects, or lets pass.
 template <class V>
 LOCKSTEP_INLINE Vec3<V> facet_share(const DielectricBsdf<V>& bsdf, V reflectance, MaskOf<V> passed,
                                     V scale) {
-  return select<V>(passed, bsdf.transmittance * ((V(1.0f) - reflectance) * scale),
-                   bsdf.reflectance * reflectance);
+  return select<V>(passed,
+                   compensated(bsdf, bsdf.transmittance) * ((V(1.0f) - reflectance) * scale),
+                   compensated(bsdf, bsdf.reflectance) * reflectance);
 }
 
 template <class V>

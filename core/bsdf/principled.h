@@ -28,7 +28,8 @@ struct PrincipledBsdf {
   Vec3<V> base_color;
   V metallic, alpha, eta, specular, transmission, coat, coat_alpha;
   MaskOf<V> thin;
-  V lost{0.0f};  // what ggx_loss() gives for wo and alpha; 0: single scattering only
+  V lost{0.0f};           // what ggx_loss() gives for wo and alpha; 0: single scattering only
+  V lost_by_clear{0.0f};  // what boundary_loss() gives for it, or ggx_loss() where thin
 };
 
 template <class V>
@@ -142,8 +143,12 @@ LOCKSTEP_INLINE FacetShares<V> facet_shares(const PrincipledBsdf<V>& bsdf,
   if (none(bsdf.lost > V(0.0f))) return s;
   // Light of further bounces between facets (Turquin 2019, eq. 16).
   const V r0 = (view.side.eta - V(1.0f)) / (view.side.eta + V(1.0f));
-  const Vec3<V> f0 = facet_reflectance(bsdf, view.dielectric, r0 * r0, V(0.0f));
-  s.reflected = s.reflected * fma(bsdf.lost, f0, Vec3<V>(V(1.0f)));
+  const Vec3<V> one(V(1.0f)), f0 = facet_reflectance(bsdf, view.dielectric, r0 * r0, V(0.0f));
+  const V clear = view.dielectric * view.transparent * bsdf.specular * r;
+  const V opaque = view.dielectric * (V(1.0f) - view.transparent);
+  s.reflected = facet_reflectance(bsdf, opaque, r, schlick_step(cos_o)) * fma(bsdf.lost, f0, one) +
+                Vec3<V>(fma(bsdf.lost_by_clear, clear, clear));
+  s.passed = s.passed * fma(bsdf.lost_by_clear, bsdf.base_color, one);
   return s;
 }
 

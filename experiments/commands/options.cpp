@@ -79,8 +79,8 @@ void add_scene_options(CLI::App& command, RendererOptions& options) {
       ->check(number_between(0, 1e9));
   command
       .add_flag("--compensate", options.compensate,
-                "Put back the light that rough metals and principled materials lose\n"
-                "between their microfacets (Turquin 2019)")
+                "Put back the light that rough metals, glass, coats and principled materials\n"
+                "lose between their microfacets (Turquin 2019)")
       ->group("Scene");
 }
 
