@@ -21,8 +21,7 @@ std::string energy_warning(const std::string& path, const MeasuredTable& table) 
   if (albedo.largest <= 1.01) return {};
   return fmt::format(
       "{}: reflects {:.0f} % of the light that arrives at {:.0f} degrees, more than there is; it "
-      "is "
-      "used as measured",
+      "is used as measured",
       path, 100.0 * albedo.largest, albedo.degrees);
 }
 
@@ -30,9 +29,18 @@ std::string energy_warning(const std::string& path, const MeasuredTable& table) 
 
 MeasuredFile read_measured_file(const std::string& path) {
   MeasuredFile file;
-  const bool text = lower_extension(path) == ".brdf";
-  file.table = make_measured_table(text ? read_measured_samples(path) : read_merl(path), path);
-  file.warning = energy_warning(path, file.table);
+  const std::string extension = lower_extension(path);
+  if (extension == ".bsdf") {
+    RglCells rgl = read_rgl(path);
+    file.table = make_measured_table(std::move(rgl.cells), path);
+    if (!rgl.isotropic) {
+      file.warning = path + ": is anisotropic; the mean over all orientations is used";
+    }
+  } else {
+    const bool text = extension == ".brdf";
+    file.table = make_measured_table(text ? read_measured_samples(path) : read_merl(path), path);
+  }
+  if (file.warning.empty()) file.warning = energy_warning(path, file.table);
   return file;
 }
 

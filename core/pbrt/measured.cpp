@@ -2,7 +2,6 @@
 #include "core/measured_file.h"
 #include "core/pbrt/material_types.h"
 
-#include <filesystem>
 #include <utility>
 
 namespace lockstep::pbrt {
@@ -29,12 +28,6 @@ MadeMaterial measured(const Inputs& in) {
     fail(set.where(), set.owner() + " needs \"string filename\" with one file");
   }
   const std::string path = resolve(in.library(), set.where().file, file->strings[0]);
-  if (std::filesystem::path(path).extension() == ".bsdf") {
-    in.warn("\"" + file->strings[0] +
-            "\" is a file of pbrt-v4's and RGL's tensor format, which is not supported (.brdf and "
-            "MERL's .binary are); a diffuse grey is used");
-    return DiffuseMaterial{};
-  }
   if (in.library().scene_measured.size() == most_measured_tables) {
     fail(set.where(), "more than " + std::to_string(most_measured_tables) +
                           " files of measured reflectance; use fewer");
