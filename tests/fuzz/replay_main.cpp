@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,7 +23,8 @@
 namespace lockstep::fuzz {
 namespace {
 
-constexpr unsigned most_seconds = 10;            // per input
+constexpr time_t most_seconds = 10;              // of a processor, per input
+constexpr unsigned longest_wait = 300;           // seconds by the clock: one that waits for ever
 constexpr rlim_t most_memory = rlim_t(2) << 30;  // address space
 constexpr std::size_t signal_stack_size = 1 << 16;
 
@@ -47,7 +49,10 @@ void say(const char* text) {
 void on_signal(int signal) {
   const int file = open(current.file, O_WRONLY | O_CREAT | O_TRUNC, 0644);
   const bool saved = file >= 0 && write(file, current.bytes, current.size) >= 0;
-  say(signal == SIGALRM ? "too slow" : signal == SIGSEGV ? "segmentation fault" : "aborted");
+  say(signal == SIGPROF   ? "too slow"
+      : signal == SIGALRM ? "hangs"
+      : signal == SIGSEGV ? "segmentation fault"
+                          : "aborted");
   say(saved ? "; the input is saved as " : "; the input cannot be saved as ");
   say(current.file);
   say("\n");
@@ -63,7 +68,7 @@ void install_limits() {
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_ONSTACK;
-  for (const int signal : {SIGABRT, SIGALRM, SIGSEGV, SIGFPE, SIGBUS, SIGILL}) {
+  for (const int signal : {SIGABRT, SIGALRM, SIGPROF, SIGSEGV, SIGFPE, SIGBUS, SIGILL}) {
     sigaction(signal, &action, nullptr);
   }
   const rlimit memory{most_memory, most_memory};
@@ -82,12 +87,19 @@ std::vector<std::string> read_corpus(const std::filesystem::path& folder) {
   return corpus;
 }
 
+// Zeros: no limits.
+void limit_time(time_t processor, unsigned clock) {
+  const itimerval left{{}, {processor, 0}};
+  setitimer(ITIMER_PROF, &left, nullptr);
+  alarm(clock);
+}
+
 void run(const std::string& input) {
   current.bytes = input.data();
   current.size = input.size();
-  alarm(most_seconds);
+  limit_time(most_seconds, longest_wait);
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
-  alarm(0);
+  limit_time(0, 0);
 }
 
 }  // namespace
