@@ -31,11 +31,11 @@ Image noise(int width, int height, unsigned seed, float largest = 1.0f) {
 }
 
 double ldr(const Image& reference, const Image& test) {
-  return mean_of(flip_ldr_map(reference, test));
+  return mean_of_map(flip_ldr_map(reference, test));
 }
 
 double hdr(const Image& reference, const Image& test) {
-  return mean_of(flip_hdr_map(reference, test));
+  return mean_of_map(flip_hdr_map(reference, test));
 }
 
 // CIELAB of a linear colour relative to the white of Rec. 709, in double precision.
@@ -150,8 +150,8 @@ TEST(Flip, LargerPixelsMakeNoiseMoreVisible) {
   const Image reference = constant(64, 64, 0.3f);
   Image test = noise(64, 64, 9);
   for (float& v : test.pixels) v = 0.2f + 0.2f * v;
-  EXPECT_GT(mean_of(flip_ldr_map(reference, test, 20.0f)),
-            1.2 * mean_of(flip_ldr_map(reference, test, 67.0f)));
+  EXPECT_GT(mean_of_map(flip_ldr_map(reference, test, 20.0f)),
+            1.2 * mean_of_map(flip_ldr_map(reference, test, 67.0f)));
 }
 
 TEST(Flip, TakesImagesOfAnySize) {
@@ -261,8 +261,8 @@ TEST_P(FlipGolden, AgreesWithTheAuthorsProgram) {
   const Image test = read_image(folder + golden.test);
   const Image map =
       golden.high_range ? flip_hdr_map(reference, test) : flip_ldr_map(reference, test);
-  RecordProperty("mean", std::to_string(mean_of(map)));
-  EXPECT_NEAR(mean_of(map), golden.mean, 1e-5);
+  RecordProperty("mean", std::to_string(mean_of_map(map)));
+  EXPECT_NEAR(mean_of_map(map), golden.mean, 1e-5);
   if (golden.largest > 0.0) {
     EXPECT_NEAR(*std::max_element(map.pixels.begin(), map.pixels.end()), golden.largest, 1e-4);
   }

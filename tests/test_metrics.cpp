@@ -77,9 +77,9 @@ TEST(Metrics, MapsHoldWhatValuesSum) {
     }
     return -1.0;
   };
-  EXPECT_EQ(value("flip_ldr"), mean_of(evaluation.flip_ldr));
-  EXPECT_EQ(value("flip_hdr"), mean_of(evaluation.flip_hdr.map));
-  EXPECT_NEAR(value("yee_share"), mean_of(evaluation.yee_failing), 1e-12);
+  EXPECT_EQ(value("flip_ldr"), mean_of_map(evaluation.flip_ldr));
+  EXPECT_EQ(value("flip_hdr"), mean_of_map(evaluation.flip_hdr.map));
+  EXPECT_NEAR(value("yee_share"), mean_of_map(evaluation.yee_failing), 1e-12);
   EXPECT_EQ(value("yee_pixels"), 200.0 * value("yee_share"));
   EXPECT_GT(value("flip_ldr"), 0.0);
   EXPECT_GT(value("yee_pixels"), 0.0);

@@ -122,7 +122,7 @@ Image flip_hdr_map(const Image& reference, const Image& test, float pixels_per_d
   return FlipReference(reference, pixels_per_degree, 0).hdr_map(test).map;
 }
 
-double mean_of(const Image& map) {
+double mean_of_map(const Image& map) {
   double sum = 0.0;
   for (float value : map.pixels) sum += value;
   return map.pixels.empty() ? 0.0 : sum / double(map.pixels.size());

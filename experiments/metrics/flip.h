@@ -62,6 +62,6 @@ Image flip_ldr_map(const Image& reference, const Image& test,
 Image flip_hdr_map(const Image& reference, const Image& test,
                    float pixels_per_degree = kPixelsPerDegree);
 
-double mean_of(const Image& map);
+double mean_of_map(const Image& map);
 
 }  // namespace lockstep

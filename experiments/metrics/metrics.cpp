@@ -42,12 +42,12 @@ void append_yee(Task& task) {
 
 void append_flip_ldr(Task& task) {
   task.result.flip_ldr = task.prepared.flip.ldr_map(task.test);
-  task.result.values.push_back(mean_of(task.result.flip_ldr));
+  task.result.values.push_back(mean_of_map(task.result.flip_ldr));
 }
 
 void append_flip_hdr(Task& task) {
   task.result.flip_hdr = task.prepared.flip.hdr_map(task.test);
-  task.result.values.push_back(mean_of(task.result.flip_hdr.map));
+  task.result.values.push_back(mean_of_map(task.result.flip_hdr.map));
 }
 
 const std::vector<Evaluator>& evaluators() {
