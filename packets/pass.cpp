@@ -1,6 +1,7 @@
 #include "packets/pass.h"
 
 #include "core/cpu_clock.h"
+#include "packets/signal_stack.h"
 
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
@@ -83,6 +84,7 @@ bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
   std::atomic<bool> stopped = false, skipped = false;
 
   const auto trace = [&](int tile) {
+    give_signal_stack();
     const int column = tile % columns, row = tile / columns;
     Worker& worker = pass.workers->local();
     const double start = thread_cpu_seconds();

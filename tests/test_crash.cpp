@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
@@ -16,8 +17,8 @@
 namespace lockstep::test_crash {
 namespace {
 
-// Renders and does `crash` once the tile at (16, 16) has samples.
-void render_until(const std::function<void()>& crash) {
+// Renders with two threads, and calls `watch` with the corner of each tile that has samples.
+void render_watched(const std::function<void(int, int)>& watch) {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
   catch_crashes();
@@ -29,10 +30,15 @@ void render_until(const std::function<void()>& crash) {
   settings.lanes = LaneLayout{4, 4, 1};
   settings.scene_name = "a-box";
   settings.command = "lockstep render a-box --seed 7";
-  settings.watch = [&](int x, int y, const Image&) {
-    if (x == 16 && y == 16) crash();
-  };
+  settings.watch = [&](int x, int y, const Image&) { watch(x, y); };
   render(scene, parse_sampler("strata"), settings);
+}
+
+// Renders and does `crash` once the tile at (16, 16) has samples.
+void render_until(const std::function<void()>& crash) {
+  render_watched([&](int x, int y) {
+    if (x == 16 && y == 16) crash();
+  });
 }
 
 constexpr const char* place =
@@ -95,6 +101,19 @@ TEST_F(CrashDeathTest, AStackThatOverflowsStillGivesTheMessage) {
   };
   EXPECT_EXIT(overflow(), testing::KilledBySignal(SIGSEGV),
               "crashed: SIGSEGV.*during   reading a scene of scenes of scenes\n  again    ");
+}
+
+TEST_F(CrashDeathTest, AStackThatOverflowsOnAThreadThatRendersNamesThePlace) {
+  const auto overflow = [] {
+    const auto main_thread = std::this_thread::get_id();
+    render_watched([main_thread](int, int) {
+      volatile int zero = 0;
+      if (std::this_thread::get_id() != main_thread) std::exit(deep(&zero));
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));  // tiles are left for the other
+    });
+  };
+  EXPECT_EXIT(overflow(), testing::KilledBySignal(SIGSEGV),
+              "crashed: SIGSEGV.*\n  render   scene a-box, .*\n  where    pixels .*\n  again    ");
 }
 
 TEST(OutOfMemory, SaysWhatWasBeingDone) {

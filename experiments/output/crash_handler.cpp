@@ -4,6 +4,7 @@
 #include "experiments/output/activity.h"
 #include "experiments/output/command_line.h"
 #include "packets/render_site.h"
+#include "packets/signal_stack.h"
 
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -36,7 +37,6 @@ constexpr CaughtSignal caught_signals[] = {{SIGSEGV, "SIGSEGV, memory that it ma
 
 // Made before anything can crash.
 char own_command[4096] = "";
-alignas(16) char signal_stack[1 << 16];
 
 std::atomic<pid_t> reporter = 0;            // the thread that prints, once there is one
 thread_local char uncaught_text[512] = "";  // what() of an exception that nobody caught
@@ -148,10 +148,7 @@ void copy(std::string_view text, char* to, std::size_t room) {
 
 void catch_crashes() {
   copy(own_command_line(), own_command, sizeof own_command);
-  stack_t stack{};
-  stack.ss_sp = signal_stack;
-  stack.ss_size = sizeof signal_stack;
-  sigaltstack(&stack, nullptr);
+  give_signal_stack();
   struct sigaction action {};
   action.sa_sigaction = on_crash;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;
