@@ -22,7 +22,11 @@ using UIntLanes = std::uint32_t[lane_count + 16];
 
 constexpr const char* compiled_isa = native_lanes == 16  ? "avx512"
                                      : native_lanes == 8 ? "avx2"
+#if defined(__aarch64__)
+                                                         : "neon";
+#else
                                                          : "sse4";
+#endif
 
 // Input values in [0, 1), independent for every purpose.
 inline float uniform(int i, std::uint32_t purpose) {

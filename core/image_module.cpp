@@ -8,7 +8,6 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <new>
@@ -82,8 +81,10 @@ StoredPixels stored_pixels(const FormatResult& result) {
   StoredPixels pixels{result.width, result.height, format_of(result.depth), {}};
   const size_t words =
       size_t(result.width) * size_t(result.height) * size_t(words_per_texel(pixels.format));
+  pixels.words.reserve(words + texel_padding);
+  const auto* stored = static_cast<const std::int32_t*>(result.stored);
+  pixels.words.assign(stored, stored + words);
   pixels.words.resize(words + texel_padding);
-  std::memcpy(pixels.words.data(), result.stored, words * sizeof(std::int32_t));
   return pixels;
 }
 

@@ -31,6 +31,7 @@ using SceneHandle = std::unique_ptr<RTCSceneTy, SceneRelease>;
 // On some CPUs Embree traces single rays with narrower instructions than packets, for the sake of
 // their clock rate; then single rays and packets would round differently.
 std::string device_settings(const std::string& isa) {
+  if (isa.empty()) return "";
   const char* registers = isa == "avx512" ? "simd512" : isa == "avx2" ? "simd256" : "simd128";
   return "isa=" + isa + ",frequency_level=" + registers;
 }
@@ -45,7 +46,7 @@ void check(RTCDevice device) {
 // Embree starts its threads with the device: where they find no memory, it calls that unknown.
 std::string why_no_device(const std::string& embree_isa) {
   const RTCError error = rtcGetDeviceError(nullptr);
-  return "Embree cannot start for instruction set " + embree_isa +
+  return "Embree cannot start" + (embree_isa.empty() ? "" : " for instruction set " + embree_isa) +
          (error == RTC_ERROR_UNSUPPORTED_CPU
               ? ", which this CPU lacks; choose another --isa"
               : " (error " + std::to_string(int(error)) +

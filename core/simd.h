@@ -17,6 +17,8 @@
 
 #if defined(__SSE4_1__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && defined(__FMA__)
@@ -25,6 +27,8 @@
 #define LOCKSTEP_ISA_NAMESPACE isa_avx2
 #elif defined(__SSE4_1__)
 #define LOCKSTEP_ISA_NAMESPACE isa_sse4
+#elif defined(__aarch64__)
+#define LOCKSTEP_ISA_NAMESPACE isa_neon
 #else
 #define LOCKSTEP_ISA_NAMESPACE isa_baseline
 #endif

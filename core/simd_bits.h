@@ -73,6 +73,9 @@ LOCKSTEP_INLINE Lanes<std::uint32_t, W> reverse_bits(Lanes<std::uint32_t, W> x) 
 #if defined(__SSSE3__)
   return apply_lanes<Lanes<std::uint32_t, W>>(
       [](auto r) LOCKSTEP_LAMBDA { return detail::reverse_by_bytes(r); }, x);
+#elif defined(__aarch64__)
+  return apply_lanes<Lanes<std::uint32_t, W>>(
+      [](auto r) LOCKSTEP_LAMBDA { return vrev32q_u8(vrbitq_u8((uint8x16_t)r)); }, x);
 #else
   return detail::reverse_by_halves(x);
 #endif

@@ -65,6 +65,9 @@ LOCKSTEP_INLINE std::uint32_t bits(LaneMask<W> m) {
 #if defined(__SSE4_1__)
   } else if constexpr (W == 4) {
     return std::uint32_t(_mm_movemask_ps((__m128)m.s));
+#elif defined(__aarch64__)
+  } else if constexpr (W == 4) {
+    return vaddvq_u32((uint32x4_t)(m.s & NativeVector<std::int32_t, 4>::type{1, 2, 4, 8}));
 #endif
   } else {
     std::uint32_t r = 0;
@@ -114,12 +117,36 @@ LOCKSTEP_INLINE float abs(float a) { return __builtin_fabsf(a); }
 
 // a * b + c: fused where the instruction set has it, else rounded twice, at every width alike.
 LOCKSTEP_INLINE float fma(float a, float b, float c) {
-#if defined(__FMA__)
+#if defined(__FMA__) || defined(__aarch64__)
   return __builtin_fmaf(a, b, c);
 #else
   return a * b + c;
 #endif
 }
+
+#if defined(__aarch64__)
+template <int W>
+LOCKSTEP_INLINE Lanes<float, W> min(Lanes<float, W> a, Lanes<float, W> b) {
+  return select(a < b, a, b);
+}
+template <int W>
+LOCKSTEP_INLINE Lanes<float, W> max(Lanes<float, W> a, Lanes<float, W> b) {
+  return select(a > b, a, b);
+}
+template <int W>
+LOCKSTEP_INLINE Lanes<float, W> sqrt(Lanes<float, W> a) {
+  return apply_lanes<Lanes<float, W>>([](auto x) LOCKSTEP_LAMBDA { return vsqrtq_f32(x); }, a);
+}
+template <int W>
+LOCKSTEP_INLINE Lanes<float, W> floor(Lanes<float, W> a) {
+  return apply_lanes<Lanes<float, W>>([](auto x) LOCKSTEP_LAMBDA { return vrndmq_f32(x); }, a);
+}
+template <int W>
+LOCKSTEP_INLINE Lanes<float, W> fma(Lanes<float, W> a, Lanes<float, W> b, Lanes<float, W> c) {
+  return apply_lanes<Lanes<float, W>>(
+      [](auto x, auto y, auto z) LOCKSTEP_LAMBDA { return vfmaq_f32(z, x, y); }, a, b, c);
+}
+#else
 
 #if defined(__AVX512F__)
 #define LOCKSTEP_FOR_REGISTER(x, name, suffix, ...)            \
@@ -173,6 +200,7 @@ LOCKSTEP_INLINE Lanes<float, W> fma(Lanes<float, W> a, Lanes<float, W> b, Lanes<
 #endif
 }
 #undef LOCKSTEP_FOR_REGISTER
+#endif
 
 template <int W>
 LOCKSTEP_INLINE Lanes<float, W> abs(Lanes<float, W> a) {

@@ -26,8 +26,8 @@ constexpr auto packed_lanes() {
 #if defined(__AVX2__) && !defined(__AVX512VL__)
 constexpr auto packed_lanes_8 = packed_lanes<8>();
 #endif
-#if defined(__SSE4_1__) && !defined(__AVX512VL__)
-// The same for four lanes, as the bytes that pshufb moves.
+#if (defined(__SSE4_1__) && !defined(__AVX512VL__)) || defined(__aarch64__)
+// The same for four lanes, as the bytes that pshufb and tbl move.
 constexpr auto packed_bytes_4 = [] {
   std::array<std::array<std::uint8_t, 16>, 16> table{};
   const auto lanes = packed_lanes<4>();
@@ -83,6 +83,10 @@ class Packing {
       const auto* row = detail::packed_bytes_4[mask].data();
       const __m128i moves = _mm_loadu_si128((const __m128i*)row);
       _mm_storeu_si128((__m128i*)p, _mm_shuffle_epi8((__m128i)v.s, moves));
+#elif defined(__aarch64__)
+    } else {
+      const auto* row = detail::packed_bytes_4[mask].data();
+      vst1q_u8((std::uint8_t*)p, vqtbl1q_u8((uint8x16_t)v.s, vld1q_u8(row)));
 #else
     } else {
       for (int lane = 0; lane < N; ++lane) {

@@ -13,9 +13,24 @@ struct Rows {
   V x, y, z, w;
 };
 
-#if defined(__SSE4_1__)
+#if defined(__SSE4_1__) || defined(__aarch64__)
 
 namespace detail {
+
+using Row = NativeVector<float, 4>::type;
+
+LOCKSTEP_INLINE Row load_row(const float* p) { return load<Lanes<float, 4>>(p).s; }
+
+#if defined(__aarch64__)
+LOCKSTEP_INLINE Row unpack_low(Row a, Row b) { return vzip1q_f32(a, b); }
+LOCKSTEP_INLINE Row unpack_high(Row a, Row b) { return vzip2q_f32(a, b); }
+LOCKSTEP_INLINE Row low_pairs(Row a, Row b) {
+  return (Row)vzip1q_f64((float64x2_t)a, (float64x2_t)b);
+}
+LOCKSTEP_INLINE Row high_pairs(Row a, Row b) {
+  return (Row)vzip2q_f64((float64x2_t)a, (float64x2_t)b);
+}
+#else
 
 #if defined(__AVX512F__)
 #define LOCKSTEP_REGISTER_OP(x, name, ...)          \
@@ -54,6 +69,7 @@ LOCKSTEP_INLINE R high_pairs(R a, R b) {
   LOCKSTEP_REGISTER_OP(a, shuffle_ps, a, b, 0xee)
 }
 #undef LOCKSTEP_REGISTER_OP
+#endif
 
 // Rows of four registers become columns, within each group of four lanes; its own inverse.
 template <class R>
@@ -72,17 +88,17 @@ struct Square {
 template <int W>
 LOCKSTEP_INLINE typename NativeVector<float, W>::type load_rows(const float* base,
                                                                 const std::int32_t* index) {
-  const __m128 row0 = _mm_loadu_ps(base + index[0]);
-  if constexpr (W == 4) return (typename NativeVector<float, W>::type)row0;
+  const Row row0 = load_row(base + index[0]);
+  if constexpr (W == 4) return row0;
 #if defined(__AVX__)
   if constexpr (W >= 8) {
     const __m256 low =
-        _mm256_insertf128_ps(_mm256_castps128_ps256(row0), _mm_loadu_ps(base + index[4]), 1);
+        _mm256_insertf128_ps(_mm256_castps128_ps256(row0), load_row(base + index[4]), 1);
     if constexpr (W == 8) return (typename NativeVector<float, W>::type)low;
 #if defined(__AVX512F__)
     if constexpr (W == 16) {
-      const __m256 high = _mm256_insertf128_ps(
-          _mm256_castps128_ps256(_mm_loadu_ps(base + index[8])), _mm_loadu_ps(base + index[12]), 1);
+      const __m256 high = _mm256_insertf128_ps(_mm256_castps128_ps256(load_row(base + index[8])),
+                                               load_row(base + index[12]), 1);
       return (typename NativeVector<float, W>::type)_mm512_insertf32x8(_mm512_castps256_ps512(low),
                                                                        high, 1);
     }
@@ -113,8 +129,8 @@ LOCKSTEP_INLINE Rows<Lanes<float, W>> gather_float_rows(const float* base,
 
 // Writes each four lanes of r to out[0], out[4], out[8], ...
 template <int W, class R>
-LOCKSTEP_INLINE void split(R r, __m128* out) {
-  if constexpr (W == 4) out[0] = (__m128)r;
+LOCKSTEP_INLINE void split(R r, Row* out) {
+  if constexpr (W == 4) out[0] = r;
 #if defined(__AVX__)
   if constexpr (W == 8) {
     out[0] = _mm256_castps256_ps128((__m256)r);
@@ -133,7 +149,7 @@ LOCKSTEP_INLINE void split(R r, __m128* out) {
 
 // Writes lane i's row to out[i].
 template <int W>
-LOCKSTEP_INLINE void store_rows(__m128* out, const Rows<Lanes<float, W>>& rows) {
+LOCKSTEP_INLINE void store_rows(Row* out, const Rows<Lanes<float, W>>& rows) {
   using V = Lanes<float, W>;
   if constexpr (V::native) {
     using R = typename V::Storage;
@@ -168,14 +184,14 @@ LOCKSTEP_INLINE Rows<Lanes<T, W>> gather_rows(const T* base, Lanes<std::int32_t,
 template <int W>
 LOCKSTEP_INLINE void add_rows(float* rows, Lanes<std::int32_t, W> index,
                               const Rows<Lanes<float, W>>& add, LaneMask<W> m) {
-  __m128 values[W];
+  detail::Row values[W];
   std::int32_t at[W];
   detail::store_rows<W>(values, add);
   store(at, index);
   for (std::uint32_t left = bits(m); left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     float* row = rows + 4 * at[lane];
-    _mm_storeu_ps(row, _mm_add_ps(_mm_loadu_ps(row), values[lane]));
+    store(row, Lanes<float, 4>::from(detail::load_row(row) + values[lane]));
   }
 }
 

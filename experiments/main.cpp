@@ -75,7 +75,8 @@ void describe(CLI::App& program) {
       "  lockstep compare cornell --samplers random,cpt,rcs,owen -o out/cornell\n"
       "\n"
       "Exit status: 0 done, 1 failed while running, 2 wrong usage.");
-  program.set_version_flag("--version", fmt::format("lockstep {}", lockstep::version()));
+  program.set_version_flag("--version", fmt::format("lockstep {}, Embree {}", lockstep::version(),
+                                                    lockstep::embree_version()));
   program.set_help_flag("-h,--help", "Print this help and exit");
   program.require_subcommand(1);
   const auto formatter = std::make_shared<HelpFormatter>();

@@ -32,6 +32,7 @@ bool is_compiled(Isa isa) {
                      [&](const Kernel* kernel) { return kernel->isa == isa; });
 }
 
+#if defined(__x86_64__)
 bool cpu_runs(Isa isa) {
   __builtin_cpu_init();
   switch (isa) {
@@ -42,9 +43,14 @@ bool cpu_runs(Isa isa) {
     case Isa::Avx512:
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
              __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+    case Isa::Neon:
+      return false;
   }
   return false;
 }
+#else
+bool cpu_runs(Isa isa) { return isa == Isa::Neon; }  // part of every 64-bit ARM
+#endif
 
 std::string available_names() {
   std::string names;
@@ -56,7 +62,7 @@ std::string available_names() {
 
 std::vector<Isa> available_isas() {
   std::vector<Isa> result;
-  for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
+  for (const Isa isa : all_isas) {
     if (is_compiled(isa) && cpu_runs(isa)) result.push_back(isa);
   }
   if (result.empty()) {
@@ -73,7 +79,7 @@ Isa choose_isa(std::string_view text) {
     text = forced;
     from = " (from the environment variable LOCKSTEP_ISA)";
   }
-  for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
+  for (const Isa isa : all_isas) {
     if (name(isa) != text) continue;
     if (is_compiled(isa) && cpu_runs(isa)) return isa;
     throw Error(fmt::format("{} {}{}; available are:{}",
@@ -81,12 +87,14 @@ Isa choose_isa(std::string_view text) {
                             from, available_names()));
   }
   throw UsageError(fmt::format(
-      "unknown instruction set '{}'{}; choose from auto, sse4, avx2, avx512", text, from));
+      "unknown instruction set '{}'{}; choose from auto, sse4, avx2, avx512, neon", text, from));
 }
 
-std::string embree_isa(Isa isa) { return isa == Isa::Sse4 ? "sse4.2" : std::string(name(isa)); }
+std::string embree_isa(Isa isa) {
+  return isa == Isa::Sse4 ? "sse4.2" : isa == Isa::Neon ? "" : std::string(name(isa));
+}
 
-int default_width(Isa isa) { return isa == Isa::Sse4 ? 4 : isa == Isa::Avx2 ? 8 : 16; }
+int default_width(Isa isa) { return isa == Isa::Avx512 ? 16 : isa == Isa::Avx2 ? 8 : 4; }
 
 const Kernel& find_kernel(Isa isa, int width, FeatureMask features) {
   const int wanted = width == 0 ? default_width(isa) : width;

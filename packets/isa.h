@@ -7,10 +7,12 @@
 
 namespace lockstep {
 
-enum class Isa { Sse4, Avx2, Avx512 };
+enum class Isa { Sse4, Avx2, Avx512, Neon };
+inline constexpr Isa all_isas[] = {Isa::Sse4, Isa::Avx2, Isa::Avx512, Isa::Neon};
 
 constexpr std::string_view name(Isa isa) {
-  return isa == Isa::Sse4 ? "sse4" : isa == Isa::Avx2 ? "avx2" : "avx512";
+  constexpr std::string_view names[] = {"sse4", "avx2", "avx512", "neon"};
+  return names[int(isa)];
 }
 
 // Instruction sets that were compiled in and this CPU runs, narrowest first.
@@ -20,7 +22,8 @@ std::vector<Isa> available_isas();
 // Throws UsageError for an unknown name, Error where this CPU cannot run it.
 Isa choose_isa(std::string_view text = "auto");
 
-// Embree's name of the instruction set, for Scene's constructor.
+// Embree's name of the instruction set, for Scene's constructor; none for neon, the only one that
+// Embree has for ARM.
 std::string embree_isa(Isa isa);
 
 // Lanes that --width auto stands for: the packet width measured fastest on that instruction set.

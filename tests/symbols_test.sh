@@ -11,7 +11,7 @@ for object in "$@"; do
   # W, V: weak; u: unique. DW.ref.* is a pointer that exception tables use, without code.
   symbols=$("$nm" --defined-only "$object") || exit 1
   leaks=$(printf '%s\n' "$symbols" |
-    awk '$2 ~ /^[WwVvu]$/ && $3 !~ /isa_(sse4|avx2|avx512)/ && $3 !~ /^DW\.ref\./ { print $3 }')
+    awk '$2 ~ /^[WwVvu]$/ && $3 !~ /isa_(sse4|avx2|avx512|neon)/ && $3 !~ /^DW\.ref\./ { print $3 }')
   [ -z "$leaks" ] && continue
   status=1
   printf '%s defines for the whole program:\n%s\n' "$object" "$(printf '%s\n' "$leaks" | c++filt)"

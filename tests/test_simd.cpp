@@ -2,13 +2,14 @@
 // kept and with denormals flushed to zero as kernels run.
 #include "core/simd.h"
 
+#include "packets/flush_denormals.h"
 #include "tests/widths.h"
 
 #include <gtest/gtest.h>
-#include <immintrin.h>
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace lockstep::test_simd {
@@ -56,13 +57,12 @@ std::vector<std::uint32_t> test_bits(std::uint32_t seed) {
 class Simd : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
-    mode_ = _mm_getcsr();
-    if (GetParam()) _mm_setcsr(mode_ | 0x8040);
+    if (GetParam()) flush_.emplace();
   }
-  void TearDown() override { _mm_setcsr(mode_); }
+  void TearDown() override { flush_.reset(); }
 
  private:
-  unsigned mode_ = 0;
+  std::optional<FlushDenormals> flush_;
 };
 INSTANTIATE_TEST_SUITE_P(Denormals, Simd, testing::Bool(),
                          [](const auto& mode) { return mode.param ? "Flushed" : "Kept"; });
@@ -257,7 +257,7 @@ TEST(SimdScalar, OperationsAreWhatTheirNamesSay) {
   EXPECT_FALSE(is_finite(not_a_number));
   EXPECT_EQ(select(true, 1, 2), 1);
   EXPECT_EQ(sqrt(9.0f), 3.0f);
-#if defined(__FMA__)
+#if defined(__FMA__) || defined(__aarch64__)
   EXPECT_EQ(fma(0x1.000002p0f, 0x1.000002p0f, -0x1.000004p0f), 0x1p-46f);
 #endif
 }

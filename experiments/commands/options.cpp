@@ -161,9 +161,9 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
                 "scene does not need. The image is the same")
       ->group("Renderer");
   add("--isa", options.isa, "ISA",
-      "Instruction set of the kernels: sse4, avx2, avx512, or auto: the\n"
-      "widest this CPU has, unless LOCKSTEP_ISA is set")
-      ->check(one_of({"auto", "sse4", "avx2", "avx512"}))
+      "Instruction set of the kernels: sse4, avx2, avx512, neon (ARM64), or\n"
+      "auto: the widest this CPU has, unless LOCKSTEP_ISA is set")
+      ->check(one_of({"auto", "sse4", "avx2", "avx512", "neon"}))
       ->capture_default_str();
 }
 

@@ -1,6 +1,7 @@
 #include "experiments/output/machine.h"
 
 #include "core/embree.h"
+#include "packets/traversal_mode.h"
 
 #include <fmt/format.h>
 #include <sched.h>
@@ -13,6 +14,10 @@
 namespace lockstep {
 
 std::string_view version() { return LOCKSTEP_VERSION; }
+
+std::string embree_version() {
+  return RTC_VERSION_STRING + std::string(has_streams ? "" : " (no ray streams)");
+}
 
 std::string cpu_name() {
   std::ifstream file("/proc/cpuinfo");
@@ -57,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> component_versions() {
   const std::string compiler = "GCC " __VERSION__;
 #endif
   return {{"compiler", compiler},
-          {"Embree", RTC_VERSION_STRING},
+          {"Embree", embree_version()},
           {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
                               FMT_VERSION % 100)}};
 }

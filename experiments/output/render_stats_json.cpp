@@ -59,6 +59,7 @@ nlohmann::ordered_json render_stats_json(const std::string& scene_name, const Sc
           {"width", stats.width},
           {"lanes", to_string(stats.lanes)},
           {"isa", name(settings.isa)},
+          {"embree_version", embree_version()},
           {"threads", stats.threads},
           {"seed", settings.seed},
           {"spp", stats.spp},

@@ -25,7 +25,7 @@ has() { grep -qE -- "$2" "$1" || fail "no '$2' in $1"; }
 small="--resolution 32x24 --spp 4 --quiet"
 
 # Help and lists.
-expect 0 'lockstep [0-9]+\.[0-9]+' --version
+expect 0 'lockstep [0-9]+\.[0-9.]+, Embree (3\.[0-9.]+|4\.[0-9.]+ \(no ray streams\))' --version
 expect 0 'compare' --help
 for command in render compare demo stress metrics info scenes samplers; do
   expect 0 'Usage: lockstep' "$command" --help
@@ -78,7 +78,7 @@ expect 1 'a.exr' metrics a.exr b.exr
 expect 0 '' render cornell -o a.exr $small --sampler rcs --seed 3 --stats a.json --weights w.exr
 for key in scene sampler width isa threads seed spp depth resolution render_seconds cpu_seconds \
   paths rays camera bounce shadow paths_per_cpu_second lanes_active nonfinite nonfinite_samples features left_out \
-  peak_memory_bytes version lanes pilot_spp mean_weight zero_weights biased traversal packets \
+  peak_memory_bytes version embree_version lanes pilot_spp mean_weight zero_weights biased traversal packets \
   stage_cpu_seconds sampling film memory_bytes geometry embree; do
   has a.json "\"$key\": "
 done
