@@ -1,7 +1,6 @@
 // Compiled once per instruction set.
-#include "samplers/perturbations.h"
+#include "samplers/added_kernels.h"
 #include "samplers/sampler.h"
-#include "samplers/sequences.h"
 
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
@@ -160,15 +159,14 @@ void fill_perturbed(const SamplerState& state, const SampleBatch& batch, const S
 template <int W>
 void fill_pair(const SamplerState& state, const SampleBatch& batch, int pair, float* u, float* v) {
   if (pair >= state.shared_pairs) {
-    return Sequences::visit(int(state.sequence), [&](auto sequence) {
-      fill_own<W, decltype(sequence)>(state, batch, pair, u, v);
-    });
+    return visit_sequence(
+        state, [&](auto sequence) { fill_own<W, decltype(sequence)>(state, batch, pair, u, v); });
   }
   SharedPoints points;
-  Sequences::visit(int(state.sequence), [&](auto sequence) {
+  visit_sequence(state, [&](auto sequence) {
     make_shared_points<decltype(sequence)>(state, batch, pair, points);
   });
-  Perturbations::visit(int(state.perturbation), [&](auto perturbation) {
+  visit_perturbation(state, [&](auto perturbation) {
     fill_perturbed<W, decltype(perturbation)>(state, batch, points, pair, u, v);
   });
 }

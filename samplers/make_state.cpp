@@ -1,8 +1,7 @@
 #include "samplers/make_state.h"
 
+#include "samplers/added.h"
 #include "samplers/dimensions.h"
-#include "samplers/perturbations.h"
-#include "samplers/sequences.h"
 
 #include <algorithm>
 #include <bit>
@@ -31,10 +30,12 @@ SamplerState make_state(const SamplerSpec& spec, std::uint32_t seed, const Sampl
   state.samples = std::max(plan.samples, 1u);
   state.width = plan.width;
   state.pixel_bits = std::bit_width(unsigned(std::max(plan.width, plan.height) - 1));
-  state.table = Sequences::infos()[std::size_t(spec.sequence)].table;
+  state.table = sequence_infos()[std::size_t(spec.sequence)].table;
+  state.added_points = added_points(spec.sequence);
   if (spec.perturbation == PerturbationId{}) return state;
   state.weight = spec.weight_source == WeightSource::Cells ? cell_side(state.samples) : spec.weight;
-  state.mask = Perturbations::infos()[std::size_t(spec.perturbation)].mask;
+  state.mask = perturbation_infos()[std::size_t(spec.perturbation)].mask;
+  state.added_offsets = added_offsets(spec.perturbation);
   return state;
 }
 

@@ -1,6 +1,7 @@
 #include "samplers/presets.h"
 
 #include "core/error.h"
+#include "samplers/added.h"
 #include "samplers/sequences.h"
 
 #include <fmt/format.h>
@@ -28,12 +29,7 @@ SamplerSpec strata() {
 
 std::vector<Preset> make_presets() {
   std::vector<Preset> list;
-  for (const SequenceInfo& info : Sequences::infos()) {
-    SamplerSpec s;
-    s.name = info.name;
-    s.sequence = sequence_named(info.name);
-    list.push_back({info.summary, info.paper, s});
-  }
+  for (const SequenceInfo& info : Sequences::infos()) list.push_back(preset_of(info));
   using enum WeightSource;
   list.push_back({"one sequence for all pixels",
                   "Sadeghi, Chen and Jensen 2009, Coherent Path Tracing",
@@ -44,16 +40,31 @@ std::vector<Preset> make_presets() {
   list.push_back({"one sequence, moved for each pixel by a blue-noise mask",
                   "Georgiev and Fajardo 2016, Blue-Noise Dithered Sampling",
                   shared("bluenoise", "bluenoise", Constant)});
-  list.push_back({"one order of the strata for all pixels, places in them moved by a blue-noise mask",
-                  "stratum-coherent sampling, see docs/samplers.md", strata()});
+  list.push_back(
+      {"one order of the strata for all pixels, places in them moved by a blue-noise mask",
+       "stratum-coherent sampling, see docs/samplers.md", strata()});
+  return list;
+}
+
+std::vector<Preset>& preset_list() {
+  static std::vector<Preset> list = make_presets();
   return list;
 }
 
 }  // namespace
 
-const std::vector<Preset>& presets() {
-  static const std::vector<Preset> list = make_presets();
-  return list;
+const std::vector<Preset>& presets() { return preset_list(); }
+
+void add_preset(const Preset& preset) {
+  check_sampler_name(preset.spec.name);
+  preset_list().push_back(preset);
+}
+
+Preset preset_of(const SequenceInfo& sequence) {
+  SamplerSpec s;
+  s.name = sequence.name;
+  s.sequence = sequence_named(sequence.name);
+  return {sequence.summary, sequence.paper, s};
 }
 
 const Preset& find_preset(std::string_view name) {

@@ -1,9 +1,8 @@
 #include "samplers/sampler_spec.h"
 
 #include "core/error.h"
-#include "samplers/perturbations.h"
+#include "samplers/added.h"
 #include "samplers/presets.h"
-#include "samplers/sequences.h"
 
 #include <fmt/format.h>
 
@@ -37,13 +36,13 @@ std::vector<std::string_view> words<Combine>() {
 template <>
 std::vector<std::string_view> words<SequenceId>() {
   std::vector<std::string_view> names;
-  for (const SequenceInfo& info : Sequences::infos()) names.push_back(info.name);
+  for (const SequenceInfo& info : sequence_infos()) names.push_back(info.name);
   return names;
 }
 template <>
 std::vector<std::string_view> words<PerturbationId>() {
   std::vector<std::string_view> names;
-  for (const PerturbationInfo& info : Perturbations::infos()) names.push_back(info.name);
+  for (const PerturbationInfo& info : perturbation_infos()) names.push_back(info.name);
   return names;
 }
 
@@ -252,6 +251,12 @@ std::vector<std::string> sampler_names() {
   return names;
 }
 
+std::vector<SamplerOption> sampler_options() {
+  std::vector<SamplerOption> list;
+  for (const Option& option : options()) list.push_back({std::string(option.key), option.values});
+  return list;
+}
+
 std::string sampler_help() {
   std::string text;
   for (const Preset& p : presets()) {
@@ -271,7 +276,7 @@ std::string sampler_help() {
     text += fmt::format("  {:<10} {}\n             {}\n", o.key, o.meaning, o.values);
   }
   text += "\nOffsets\n";
-  for (const PerturbationInfo& o : Perturbations::infos()) {
+  for (const PerturbationInfo& o : perturbation_infos()) {
     text += fmt::format("  {:<10} {}\n             ({})\n", o.name, o.summary, o.paper);
   }
   text +=
@@ -293,7 +298,7 @@ std::string_view name(PerturbationId perturbation) {
 }
 
 bool is_planned(const SamplerSpec& spec) {
-  return Sequences::infos()[size_t(spec.sequence)].planned ||
+  return sequence_infos()[size_t(spec.sequence)].planned ||
          spec.weight_source == WeightSource::Cells;
 }
 

@@ -67,6 +67,13 @@ std::string to_string(const SamplerSpec& spec);
 // Names of all presets.
 std::vector<std::string> sampler_names();
 
+// An option as it is typed behind a preset's name, and what it takes: words with bars between, or
+// what kind of number.
+struct SamplerOption {
+  std::string key, values;
+};
+std::vector<SamplerOption> sampler_options();
+
 // Help text: each preset with its options, defaults and paper; for --help and error messages.
 std::string sampler_help();
 

@@ -7,6 +7,14 @@
 
 namespace lockstep {
 
+struct SamplerState;
+
+// Points of an added sequence, or offsets of an added perturbation (added.h): for i in [0, count)
+// the pair's of sample[i] of pixel[i] to x[i] and y[i], as 32-bit binary fractions.
+using PointsFunction = void (*)(const SamplerState& state, const std::uint32_t* pixel,
+                                const std::uint32_t* sample, int count, int pair, std::uint32_t* x,
+                                std::uint32_t* y);
+
 struct SamplerState {
   std::uint32_t seed = 0;
   Share share = Share::Pixel;
@@ -20,8 +28,10 @@ struct SamplerState {
   int width = 1;                   // of the image; pixels are numbered y * width + x
   int pixel_bits = 1;              // of a pixel's x and y
   std::uint32_t samples = 16;      // per pixel that are planned; a multiple of them is as good
-  const std::uint32_t* table = nullptr;  // the sequence's, if it has one
-  const std::uint32_t* mask = nullptr;   // the perturbation's, if it has one
+  const std::uint32_t* table = nullptr;    // the sequence's, if it has one
+  const std::uint32_t* mask = nullptr;     // the perturbation's, if it has one
+  PointsFunction added_points = nullptr;   // set where the sequence is an added one
+  PointsFunction added_offsets = nullptr;  // set where the perturbation is
 };
 
 // What a batch of values is for: samples of pixels (y * width + x), with sample numbers in

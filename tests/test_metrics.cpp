@@ -128,5 +128,13 @@ TEST(Metrics, ValuesThatAreNotFiniteAreLocated) {
   }
 }
 
+TEST(Metrics, NamesThatAreTakenOrNoColumnAreNotAdded) {
+  const std::size_t count = metrics().size();
+  for (const char* name : {"rmse", "yee_share", "", "a,b", "A", "a b", "a\"b"}) {
+    EXPECT_THROW(add_metric({name, "", ""}, rmse), Error) << name;
+  }
+  EXPECT_EQ(metrics().size(), count);
+}
+
 }  // namespace
 }  // namespace lockstep::test_metrics

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lockstep {
 namespace {
@@ -22,7 +24,7 @@ struct Task {
 // Metrics that one function evaluates together; it appends their values.
 struct Evaluator {
   std::vector<Metric> metrics;
-  void (*append)(Task& task);
+  std::function<void(Task& task)> append;
 };
 
 template <double (*function)(const Image&, const Image&)>
@@ -50,8 +52,8 @@ void append_flip_hdr(Task& task) {
   task.result.values.push_back(mean_of_map(task.result.flip_hdr.map));
 }
 
-const std::vector<Evaluator>& evaluators() {
-  static const std::vector<Evaluator> table = {
+std::vector<Evaluator>& evaluators() {
+  static std::vector<Evaluator> table = {
       {{{"rmse", "RMSE", "radiance"}}, append_value<rmse>},
       {{{"relmse", "relMSE", ""}}, append_value<relmse>},
       {{{"relmse_trimmed", "relMSE, worst 0.1 % of pixels left out", ""}},
@@ -101,10 +103,8 @@ void check_sizes(const Image& reference, const Image& test, std::string_view ref
                   test.width, test.height, test.channels));
 }
 
-}  // namespace
-
-const std::vector<Metric>& metrics() {
-  static const std::vector<Metric> table = [] {
+std::vector<Metric>& metric_list() {
+  static std::vector<Metric> table = [] {
     std::vector<Metric> all;
     for (const Evaluator& evaluator : evaluators()) {
       all.insert(all.end(), evaluator.metrics.begin(), evaluator.metrics.end());
@@ -112,6 +112,32 @@ const std::vector<Metric>& metrics() {
     return all;
   }();
   return table;
+}
+
+bool is_column_name(std::string_view name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+}  // namespace
+
+const std::vector<Metric>& metrics() { return metric_list(); }
+
+void add_metric(const Metric& metric, MetricFunction function) {
+  if (!is_column_name(metric.name)) {
+    throw Error(fmt::format(
+        "the added metric '{}' needs a name of lower-case letters, digits and _", metric.name));
+  }
+  for (const Metric& other : metrics()) {
+    if (other.name != metric.name) continue;
+    throw Error(fmt::format("there is a metric '{}' already; give the added one another name",
+                            metric.name));
+  }
+  metric_list().push_back(metric);
+  evaluators().push_back({{metric}, [function = std::move(function)](Task& task) {
+                            task.result.values.push_back(function(task.reference, task.test));
+                          }});
 }
 
 PreparedReference prepare_reference(const Image& reference, const MetricSettings& settings,

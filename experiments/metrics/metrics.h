@@ -7,6 +7,7 @@
 #include "experiments/metrics/yee.h"
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,13 @@ struct Metric {
 };
 
 const std::vector<Metric>& metrics();
+
+// Adds a metric of linear RGB images to the table; for programs that build on the library, before
+// they measure anything. Throws Error where the name is taken, or is not of lower-case letters,
+// digits and
+// _. The metric's texts must live as long as the program.
+using MetricFunction = std::function<double(const Image& reference, const Image& test)>;
+void add_metric(const Metric& metric, MetricFunction function);
 
 // How the images are looked at.
 struct MetricSettings {

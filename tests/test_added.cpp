@@ -1,0 +1,75 @@
+// Sequences and perturbations from outside: the library's own, added, give the same values at every
+// width. That whole programs with additions work, install/install_test.sh sees.
+#include "samplers/added.h"
+
+#include "core/error.h"
+#include "samplers/presets.h"
+#include "tests/t_samples.h"
+
+namespace lockstep {
+namespace test_added {
+
+// Samples 3 to 20 of some pixels of a tile: two packets of 16 and a part of one.
+Couples some_couples(int width) {
+  Couples c;
+  for (std::uint32_t k = 3; k <= 20; ++k) {
+    for (const std::uint32_t x : {1u, 6u}) c.add(k % 5 * std::uint32_t(width) + x, k);
+  }
+  return c;
+}
+
+void expect_same_values(const SamplerState& own, const SamplerState& added) {
+  for (const int width : {1, 4, 8, 16}) {
+    const Kernel& kernel = find_kernel(available_isas().back(), width);
+    for (const int pair : {0, 2, 9}) {
+      const Couples c = some_couples(own.width);
+      EXPECT_EQ(draw_batch(kernel, own, c, pair), draw_batch(kernel, added, c, pair))
+          << "width " << width << ", pair " << pair;
+    }
+  }
+}
+
+const SamplePlan plan{32, 24, 16};
+
+TEST(Added, SequenceOfAPixelHasTheValuesOfTheSameOneCompiledIn) {
+  const SamplerState own = state_of("owen", 5, plan);
+  SamplerState added = state_of("random", 5, plan);
+  added.added_points = points_of<OwenSequence>();
+  expect_same_values(own, added);
+}
+
+TEST(Added, SharedSequenceHasTheValuesOfTheSameOneCompiledIn) {
+  for (const char* options : {"share=image", "share=tile,offset=constant,interleave=2",
+                              "share=image,offset=morton,mix=xor,pairs=2"}) {
+    const SamplerState own = state_of(std::string("owen:") + options, 5, plan);
+    SamplerState added = state_of(std::string("random:") + options, 5, plan);
+    added.added_points = points_of<OwenSequence>();
+    expect_same_values(own, added);
+  }
+}
+
+TEST(Added, OffsetHasTheValuesOfTheSameOneCompiledIn) {
+  const SamplerState own = state_of("cpt:offset=fresh,weight=0.5", 5, plan);
+  SamplerState added = state_of("cpt:offset=constant,weight=0.5", 5, plan);
+  added.added_offsets = offsets_of<FreshOffset>();
+  expect_same_values(own, added);
+}
+
+TEST(Added, NamesThatAreTakenOrCannotBeTypedAreRefused) {
+  for (const char* name : {"owen", "rcs", "", "a,b", "a:b", "a=b", "Owen", "a b"}) {
+    EXPECT_THROW(add_sequence(SequenceInfo{name, "", ""}, points_of<OwenSequence>()), Error)
+        << name;
+    Preset preset;
+    preset.spec.name = name;
+    EXPECT_THROW(add_preset(preset), Error) << name;
+  }
+  for (const char* name : {"fresh", "none", "", "a,b"}) {
+    EXPECT_THROW(add_perturbation(PerturbationInfo{name, "", ""}, offsets_of<FreshOffset>()), Error)
+        << name;
+  }
+  EXPECT_EQ(sequence_infos().size(), std::size_t(Sequences::size));
+  EXPECT_EQ(perturbation_infos().size(), std::size_t(Perturbations::size));
+}
+
+}  // namespace test_added
+}  // namespace lockstep
