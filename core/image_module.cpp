@@ -18,8 +18,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path module_path() {
-  return fs::read_symlink("/proc/self/exe").parent_path() / image_formats_file;
+// Where shared libraries are looked for; first of all in the folders that the program's rpath
+// names.
+std::vector<fs::path> library_folders() {
+  void* const program = dlopen(nullptr, RTLD_LAZY);
+  Dl_serinfo size{};
+  if (!program || dlinfo(program, RTLD_DI_SERINFOSIZE, &size) != 0) return {};
+  std::vector<Dl_serinfo> storage(size.dls_size / sizeof(Dl_serinfo) + 1, size);
+  Dl_serinfo* const list = storage.data();
+  if (dlinfo(program, RTLD_DI_SERINFO, list) != 0) return {};
+  std::vector<fs::path> folders;
+  const Dl_serpath* const paths = list->dls_serpath;
+  for (unsigned i = 0; i < list->dls_cnt; ++i) folders.emplace_back(paths[i].dls_name);
+  return folders;
+}
+
+// Beside the program, as it is built; or where its rpath says, as it is installed.
+fs::path find_module() {
+  const fs::path beside = fs::read_symlink("/proc/self/exe").parent_path() / image_formats_file;
+  if (fs::exists(beside)) return beside;
+  for (const fs::path& folder : library_folders()) {
+    if (fs::exists(folder / image_formats_file)) return folder / image_formats_file;
+  }
+  return beside;
+}
+
+const fs::path& module_path() {
+  static const fs::path path = find_module();
+  return path;
 }
 
 // What its libraries and their threads take of address space. Where they get less, their own
@@ -109,7 +135,7 @@ std::string name_of_format(const std::vector<unsigned char>& file) {
 }  // namespace
 
 void check_image_module() {
-  const fs::path file = module_path();
+  const fs::path& file = module_path();
   if (fs::exists(file)) return check_address_space();
   throw Error("this kind of image needs the module " + file.string() +
               ", which is missing: put it beside the program, or use .exr");

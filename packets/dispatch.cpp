@@ -27,6 +27,14 @@ constexpr const Kernel* kernels[] = {
 #undef LOCKSTEP_ADDRESS
 };
 
+std::string available_names() {
+  std::string names;
+  for (const Isa isa : available_isas()) names += fmt::format(" {}", name(isa));
+  return names;
+}
+
+}  // namespace
+
 bool is_compiled(Isa isa) {
   return std::any_of(std::begin(kernels), std::end(kernels),
                      [&](const Kernel* kernel) { return kernel->isa == isa; });
@@ -51,14 +59,6 @@ bool cpu_runs(Isa isa) {
 #else
 bool cpu_runs(Isa isa) { return isa == Isa::Neon; }  // part of every 64-bit ARM
 #endif
-
-std::string available_names() {
-  std::string names;
-  for (const Isa isa : available_isas()) names += fmt::format(" {}", name(isa));
-  return names;
-}
-
-}  // namespace
 
 std::vector<Isa> available_isas() {
   std::vector<Isa> result;

@@ -15,6 +15,9 @@ constexpr std::string_view name(Isa isa) {
   return names[int(isa)];
 }
 
+bool is_compiled(Isa isa);  // kernels for it are in this build
+bool cpu_runs(Isa isa);
+
 // Instruction sets that were compiled in and this CPU runs, narrowest first.
 std::vector<Isa> available_isas();
 

@@ -20,5 +20,6 @@ void add_runs_command(CLI::App& program, RunCommand& run);
 void add_info_command(CLI::App& program, RunCommand& run);
 void add_scenes_command(CLI::App& program, RunCommand& run);
 void add_samplers_command(CLI::App& program, RunCommand& run);
+void add_shell_commands(CLI::App& program, RunCommand& run);  // completion, manual
 
 }  // namespace lockstep

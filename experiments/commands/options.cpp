@@ -49,14 +49,19 @@ std::vector<int> counts_in(std::string_view text, int largest, Complaint complai
   return sorted_once(std::move(counts));
 }
 
-// Membership in a list that the option's description already gives.
-CLI::Validator one_of(const std::vector<std::string>& choices) {
-  return CLI::Validator(
-      [choices](std::string& text) {
-        if (std::find(choices.begin(), choices.end(), text) != choices.end()) return std::string();
-        return fmt::format("'{}' is not one of {}", text, fmt::join(choices, ", "));
-      },
-      "");
+// What shells complete an option by that takes other values too.
+CLI::Validator such_as(const std::vector<std::string>& examples) {
+  return CLI::Validator([](std::string&) { return std::string(); }, "")
+      .name(fmt::format("{}", fmt::join(examples, "|")));
+}
+
+std::vector<std::string> traversal_names() {
+  std::vector<std::string> names{"auto"};
+  for (int i = 0; i < traversal_modes; ++i) {
+    const TraversalMode mode = traversal_mode(i);
+    if (mode != TraversalMode{Packets::Single, true}) names.push_back(to_string(mode));
+  }
+  return names;
 }
 
 void add_scene_options(CLI::App& command, RendererOptions& options) {
@@ -110,6 +115,17 @@ CLI::Validator whole_number_between(std::int64_t low, std::int64_t high) {
       "");
 }
 
+CLI::Validator one_of(const std::vector<std::string>& choices) {
+  return CLI::Validator(
+             [choices](std::string& text) {
+               const bool found = std::find(choices.begin(), choices.end(), text) != choices.end();
+               if (found) return std::string();
+               return fmt::format("'{}' is not one of {}", text, fmt::join(choices, ", "));
+             },
+             "")
+      .name(fmt::format("{}", fmt::join(choices, "|")));
+}
+
 void refuse_empty_values(CLI::App& program) {
   const CLI::Validator not_empty(
       [](std::string& text) { return text.empty() ? "the value is empty" : std::string(); }, "");
@@ -154,6 +170,7 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
       "stream1m or streamnm (Embree 3 only), with -coherent behind it for\n"
       "Embree's coherent flag, or auto: measured while rendering, by kind\n"
       "of ray and bounce. The image is the same")
+      ->check(such_as(traversal_names()))
       ->capture_default_str();
   command
       .add_flag("--general", options.general,

@@ -39,6 +39,10 @@ CLI::Validator number_between(double low, double high);
 // The same for whole numbers.
 CLI::Validator whole_number_between(std::int64_t low, std::int64_t high);
 
+// Accepts the words that the option's description gives. The validator is named after them, with
+// bars between, for shells to complete.
+CLI::Validator one_of(const std::vector<std::string>& choices);
+
 // Makes all options of all subcommands that take a value refuse an empty one.
 void refuse_empty_values(CLI::App& program);
 
