@@ -11,7 +11,7 @@ namespace {
 template <class Predicate>
 std::string isa_names(Predicate is_named) {
   std::string names;
-  for (const Isa isa : {Isa::Sse4, Isa::Avx2, Isa::Avx512}) {
+  for (const Isa isa : all_isas) {
     if (is_named(isa)) names += fmt::format(" {}", name(isa));
   }
   return names.empty() ? " none" : names;
