@@ -11,7 +11,7 @@ namespace lockstep {
 namespace {
 
 // Raise the number when RenderState or what a sample's value is changes.
-constexpr std::string_view magic = "lockstep film 4\n";
+constexpr std::string_view magic = "lockstep film 5\n";
 
 template <class T>
 void write(std::ostream& out, const T* data, std::size_t count) {
@@ -22,12 +22,19 @@ void read(std::istream& in, T* data, std::size_t count) {
   in.read(reinterpret_cast<char*>(data), std::streamsize(count * sizeof(T)));
 }
 
+void resize_earlier(const Film&) {}  // that is saved: it has its size
+void resize_earlier(Film& film) { film.earlier.resize(film.sums.size()); }
+
 // Visits everything that is kept, for reading and writing alike.
 template <class S, class F>
 void for_each_part(S& state, F f) {
   for (auto* film : {&state.pilot, &state.half_pilot, &state.image}) {
     f(&film->samples, 1);
     f(film->sums.data(), film->sums.size());
+    if (film->samples > film_block) {
+      resize_earlier(*film);
+      f(film->earlier.data(), film->earlier.size());
+    }
   }
   f(&state.totals, 1);
   f(&state.wall_seconds, 1);

@@ -49,10 +49,33 @@ struct Pass {
   std::function<void(const TileJob&)> watch;
 };
 
-// Adds samples [film.samples, film.samples + pass.samples) to the film. `tile_done` is called after
-// each tile, from one thread at a time, with the share of this pass that is done; once it returns
-// false no further tile begins. Where that left tiles out, film.samples stays, and the function
-// returns false. Costs are added to `totals`.
+void add(PassTotals& to, const PassTotals& from);
+
+// Part of a pass: tiles first, first + 1, ... in the order of rows, and samples of one block.
+struct TileWork {
+  std::int32_t first = 0;
+  std::int32_t tiles = 0;
+  std::uint32_t first_sample = 0;
+  std::uint32_t samples = 0;
+};
+
+// Pixels [x0, x1) x [y0, y1).
+struct TileArea {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+int tile_count(const Film& film);
+TileArea tile_area(const Film& film, int tile);
+
+// Renders the work into the film's `sums` alone. Returns false where `tile_done` (see run_pass)
+// asked to stop before all was done. Costs are added to `totals`.
+bool run_tiles(const Pass& pass, Film& film, const TileWork& work, PassTotals& totals,
+               const std::function<bool(double)>& tile_done);
+
+// Adds samples [film.samples, film.samples + pass.samples), of one block, to the film. `tile_done`
+// is called after each tile, from one thread at a time, with the share of this pass that is done;
+// once it returns false no further tile begins. Where that left tiles out, film.samples stays, and
+// the function returns false. Costs are added to `totals`.
 bool run_pass(const Pass& pass, Film& film, PassTotals& totals,
               const std::function<bool(double)>& tile_done);
 

@@ -1,4 +1,4 @@
-#include "packets/render.h"
+#include "packets/shared_render.h"
 
 #include "core/cpu_clock.h"
 #include "core/error.h"
@@ -16,12 +16,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <thread>
+#include <utility>
 
 namespace lockstep {
 namespace {
 
-constexpr std::uint32_t longest_pass = 64;        // samples
+constexpr std::uint32_t longest_pass = film_block;  // samples
+constexpr std::uint32_t longest_shared_pass = 64 * film_block;
 constexpr std::uint32_t most_samples = 1u << 24;  // that a render for a time takes
 
 // How many samples go to the pilot. A render for a time does not know its spp: it takes 4.
@@ -59,23 +62,42 @@ LaneLayout layout_of_most_paths(const TileCounts& counts) {
   return most->lanes;
 }
 
-// Before any of it is taken: sums of the image, of the pilot and of its half, and the image itself.
-void require_film_memory(const FilmDescription& film, const SamplerSpec& sampler) {
+// Before any of it is taken, with sums of earlier blocks where there will be some: sums of the
+// image, of the pilot and of its half, and the image itself.
+void require_film_memory(const FilmDescription& film, const SamplerSpec& sampler,
+                         const RenderSettings& settings) {
   const int films = sampler.has_pilot() ? sampler.weight_source == WeightSource::Auto ? 3 : 2 : 1;
-  const double bytes = films * 4.0 * sizeof(double) + 3.0 * sizeof(float);
+  const bool has_blocks = settings.time_seconds > 0.0 || std::uint32_t(settings.spp) > film_block;
+  const double bytes = films * (has_blocks ? 8.0 : 4.0) * sizeof(double) + 3.0 * sizeof(float);
   require_memory(double(film.width) * film.height * bytes,
                  fmt::format("an image of {}x{} pixels", film.width, film.height),
                  "choose a smaller --resolution");
 }
 
+// Others help for as long as this lives.
+class SharedScope {
+ public:
+  SharedScope(const TileSharing& sharing, const SharedPass& pass, TilePool& pool)
+      : sharing_(sharing) {
+    sharing.begin(pass, pool);
+  }
+  ~SharedScope() { sharing_.end(); }
+  SharedScope(const SharedScope&) = delete;
+  SharedScope& operator=(const SharedScope&) = delete;
+
+ private:
+  const TileSharing& sharing_;
+};
+
 class Renderer {
  public:
   Renderer(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
-           const Progress& progress)
+           const Progress& progress, const TileSharing* sharing)
       : scene_(scene),
         sampler_(sampler),
         settings_(settings),
         progress_(progress),
+        sharing_(sharing),
         start_(wall_seconds()),
         counted_(start_),
         workers_(TraversalPolicy(settings.traversal, default_width(settings.isa)),
@@ -135,6 +157,28 @@ class Renderer {
     return result;
   }
 
+  // Another process leads: what help() renders belongs to this pass.
+  void help_with(SharedPass shared) {
+    shared_ = std::move(shared);
+    shared_state_ = shared_.is_pilot ? pilot_state()
+                                     : make_state(sampler_, stream_seed(settings_.seed, 0),
+                                                  plan(std::uint32_t(settings_.spp - pilot_spp_)));
+    if (!shared_.weights.empty()) shared_state_->weights = shared_.weights.data();
+    pass_.sampler = &*shared_state_;
+  }
+
+  // Sums of the work, by tiles, from `start` or from 0 where that is empty.
+  std::vector<double> help(const TileWork& work, const std::vector<double>& start,
+                           PassTotals& totals) {
+    const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                      std::size_t(pass_.threads));
+    set_sums(state_.image, work, start);
+    const bool finished = run_tiles(pass_, state_.image, work, totals,
+                                    [&](double share) { return !progress_ || progress_(share); });
+    if (!finished) throw Cancelled();
+    return sums_of(state_.image, work);
+  }
+
  private:
   // False where all samples go to the pilot, which then is the image: nothing needs weights.
   bool image_follows() const { return settings_.time_seconds > 0.0 || settings_.spp > pilot_spp_; }
@@ -148,9 +192,13 @@ class Renderer {
     return {film.width, film.height, planned};
   }
 
+  SamplerState pilot_state() const {
+    return make_state(pilot_sampler(sampler_), stream_seed(settings_.seed, 1),
+                      plan(std::uint32_t(pilot_spp_)));
+  }
+
   void render_pilot() {
-    const SamplerState state = make_state(pilot_sampler(sampler_), stream_seed(settings_.seed, 1),
-                                          plan(std::uint32_t(pilot_spp_)));
+    const SamplerState state = pilot_state();
     pass_.sampler = &state;
     if (sampler_.weight_source == WeightSource::Auto && state_.half_pilot.samples == 0) {
       render_to(state_.pilot, std::uint32_t(pilot_spp_ / 2));
@@ -175,11 +223,12 @@ class Renderer {
   // Passes of at most 64 samples, after which the film is whole again: shorter ones where it is
   // saved, doubling up to some seconds each. A pass that is cut short is lost, those before it not.
   void render_to(Film& film, std::uint32_t samples) {
-    std::uint32_t chunk = settings_.resume_file.empty() ? longest_pass : 1;
+    const std::uint32_t longest = sharing_ ? longest_shared_pass : longest_pass;
+    std::uint32_t chunk = settings_.resume_file.empty() ? longest : 1;
     while (film.samples < samples) {
       const double before = wall_seconds();
       run_samples(film, std::min(chunk, samples - film.samples));
-      if (wall_seconds() - before < 5.0) chunk = std::min(2 * chunk, longest_pass);
+      if (wall_seconds() - before < 5.0) chunk = std::min(2 * chunk, longest);
     }
   }
 
@@ -191,7 +240,7 @@ class Renderer {
       const double before = wall_seconds();
       run_samples(state_.image, chunk);
       const double now = wall_seconds();
-      const double per_sample = (now - before) / chunk;
+      const double per_sample = (now - before) / pass_.samples;
       const double left = settings_.time_seconds - (now - start_);
       if (left < per_sample) break;
       const double longest = std::min<double>(2 * chunk, longest_pass);
@@ -200,22 +249,62 @@ class Renderer {
   }
 
   void run_samples(Film& film, std::uint32_t samples) {
-    pass_.samples = samples;
+    pass_.samples = whole_blocks(film.samples, samples);
     if (settings_.watch) {
-      pass_.watch = [&](const TileJob& tile) {
-        settings_.watch(tile.x0, tile.y0, mean(film, tile.x0, tile.y0, tile.x1, tile.y1));
+      pass_.watch = [watch = watch_of(film)](const TileJob& tile) {
+        watch({tile.x0, tile.y0, tile.x1, tile.y1});
       };
     }
     const double done = double(samples_done());
-    const bool finished = run_pass(pass_, film, state_.totals, [&](double share) {
+    const std::function<bool(double)> show = [&](double share) {
       if (!progress_) return true;
       const double fraction = settings_.time_seconds > 0.0
                                   ? (wall_seconds() - start_) / settings_.time_seconds
-                                  : (done + share * samples) / double(settings_.spp);
+                                  : (done + share * pass_.samples) / double(settings_.spp);
       return progress_(std::min(fraction, 1.0));
-    });
+    };
+    const bool finished =
+        sharing_ ? run_shared(film, show) : run_pass(pass_, film, state_.totals, show);
     if (!finished) throw Cancelled();
     save();
+  }
+
+  // As run_pass(), with the help of others. This process takes its parts like them.
+  bool run_shared(Film& film, const std::function<bool(double)>& show) {
+    TilePool pool(film, pass_.samples, sharing_->parties, watch_of(film));
+    SharedPass shared{&film == &state_.pilot, {}};
+    if (pass_.sampler->weights) {
+      const float* weights = pass_.sampler->weights;
+      shared.weights.assign(weights, weights + film.sums.size() / 4);
+    }
+    if (!own_tiles_) own_tiles_.emplace(film.width, film.height);
+    Pass own = pass_;
+    own.watch = {};
+    const SharedScope scope(*sharing_, shared, pool);
+    bool goes_on = true;
+    while (goes_on && !pool.done()) {
+      if (const std::optional<TileWork> work = pool.take(pass_.threads)) {
+        PassTotals totals;
+        set_sums(*own_tiles_, *work, pool.start(*work));
+        goes_on = run_tiles(own, *own_tiles_, *work, totals,
+                            [&](double) { return show(pool.share_done()); });
+        if (goes_on) pool.deliver(*work, sums_of(*own_tiles_, *work), totals);
+      } else {
+        pool.wait(0.05);
+        goes_on = show(pool.share_done());
+      }
+    }
+    if (!goes_on) return false;
+    add(state_.totals, pool.totals());
+    film.samples += pass_.samples;
+    return true;
+  }
+
+  std::function<void(const TileArea&)> watch_of(const Film& film) const {
+    if (!settings_.watch) return {};
+    return [&](const TileArea& area) {
+      settings_.watch(area.x0, area.y0, mean(film, area.x0, area.y0, area.x1, area.y1));
+    };
   }
 
   // Everything that a sample's value depends on.
@@ -265,8 +354,10 @@ class Renderer {
     std::memcpy(s.traced, counts.traced, sizeof s.traced);
     s.packets = counts.packets;
     s.width = pass_.kernel->width;
-    s.film_bytes = (state_.image.sums.size() + state_.pilot.sums.size()) * sizeof(double) +
-                   state_.image.sums.size() / 4 * 3 * sizeof(float);
+    for (const Film* film : {&state_.image, &state_.pilot}) {
+      s.film_bytes += (film->sums.size() + film->earlier.size()) * sizeof(double);
+    }
+    s.film_bytes += state_.image.sums.size() / 4 * 3 * sizeof(float);
     if (counts.lanes > 0) s.lanes_active = double(counts.active_lanes) / double(counts.lanes);
     s.clamped = counts.clamped;
     s.nonfinite = counts.nonfinite;
@@ -285,6 +376,7 @@ class Renderer {
   const SamplerSpec& sampler_;
   const RenderSettings& settings_;
   const Progress& progress_;
+  const TileSharing* sharing_;  // null: this process alone
   std::string title_;
   double start_;    // of this run, wall clock
   double counted_;  // up to when state_.wall_seconds counts
@@ -293,12 +385,13 @@ class Renderer {
   Workers workers_;
   Pass pass_;
   int pilot_spp_ = 0;
+  std::optional<Film> own_tiles_;  // of what this process renders of a shared pass
+  // Of a process that helps.
+  std::optional<SamplerState> shared_state_;
+  SharedPass shared_;
 };
 
-}  // namespace
-
-RenderResult render(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
-                    const Progress& progress) {
+void check(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings) {
   if (settings.spp < 1 && settings.time_seconds <= 0.0) throw UsageError("spp must be at least 1");
   if (settings.depth < 1 || settings.depth > max_depth) {
     throw UsageError(fmt::format("depth must lie in 1..{}", max_depth));
@@ -309,8 +402,56 @@ RenderResult render(const Scene& scene, const SamplerSpec& sampler, const Render
   if (settings.log && settings.threads != 1) {
     throw UsageError("rays can be kept with one thread only");
   }
-  require_film_memory(scene.description().film, sampler);
-  return Renderer(scene, sampler, settings, progress).run();
+  require_film_memory(scene.description().film, sampler, settings);
+}
+
+}  // namespace
+
+RenderResult render(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
+                    const Progress& progress) {
+  check(scene, sampler, settings);
+  return Renderer(scene, sampler, settings, progress, nullptr).run();
+}
+
+RenderResult render(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
+                    const Progress& progress, const TileSharing& sharing) {
+  check(scene, sampler, settings);
+  return Renderer(scene, sampler, settings, progress, &sharing).run();
+}
+
+class TileRenderer::Implementation {
+ public:
+  Implementation(const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
+                 Progress alive)
+      : sampler_(sampler),
+        settings_(settings),
+        alive_(std::move(alive)),
+        renderer_(scene, sampler_, settings_, alive_, nullptr) {}
+
+  Renderer& renderer() { return renderer_; }
+
+ private:
+  const SamplerSpec sampler_;
+  const RenderSettings settings_;
+  const Progress alive_;
+  Renderer renderer_;
+};
+
+TileRenderer::TileRenderer(const Scene& scene, const SamplerSpec& sampler,
+                           const RenderSettings& settings, Progress alive) {
+  check(scene, sampler, settings);
+  implementation_ = std::make_unique<Implementation>(scene, sampler, settings, std::move(alive));
+}
+
+TileRenderer::~TileRenderer() = default;
+
+void TileRenderer::begin(SharedPass pass) {
+  implementation_->renderer().help_with(std::move(pass));
+}
+
+std::vector<double> TileRenderer::render(const TileWork& work, const std::vector<double>& start,
+                                         PassTotals& totals) {
+  return implementation_->renderer().help(work, start, totals);
 }
 
 }  // namespace lockstep
