@@ -4,7 +4,10 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/compare_run.h"
 #include "experiments/commands/options.h"
+#include "experiments/compare/compare_ranks.h"
 #include "experiments/compare/experiment_file.h"
+#include "experiments/distributed/agreement.h"
+#include "experiments/distributed/session.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,6 +30,7 @@ struct CompareOptions {
   int reference_spp = 0;
   double timing_spread = 0.03;
   std::optional<int> timing_repeats;
+  double rank_timeout = 60.0;
   bool resume = false;
   bool quiet = false;
 };
@@ -139,7 +143,18 @@ void run_compare(CLI::App& command, CompareOptions& options) {
   if (const auto file = take_experiment_file(options)) apply_experiment(command, options, *file);
   CompareSettings settings = compare_settings(options);
   settings.experiment = effective_experiment(command, options);
-  run_comparison(settings, options.quiet);
+  const Ranks ranks = start_ranks();
+  agree(ranks, settings.render);
+  if (ranks.rank > 0) {
+    help_compare(settings);
+    end_ranks();
+  } else if (ranks.count > 1) {
+    Desk desk(ranks, options.rank_timeout);
+    run_comparison(settings, options.quiet, &desk);
+    end_ranks(desk);
+  } else {
+    run_comparison(settings, options.quiet);
+  }
 }
 
 void add_what(CLI::App& command, CompareOptions& options) {
@@ -221,6 +236,7 @@ void add_options(CLI::App& command, CompareOptions& options) {
   add_reference(command, options);
   add_course(command, options);
   add_renderer_options(command, options.renderer);
+  add_rank_options(command, options.rank_timeout);
   // A list, where other commands take one.
   command.remove_option(command.get_option("--depth"));
   command
@@ -256,7 +272,8 @@ void add_compare_command(CLI::App& program, RunCommand& run) {
       "  lockstep compare scene.pbrt --samplers random,rcs:c=4,t=0.02,rcs:c=8 --spp 8,32 --seeds "
       "4\n"
       "      --reference reference.exr --depth 1 -o out/poster\n"
-      "  lockstep compare experiment.toml --threads 1 -o out/one-thread");
+      "  lockstep compare experiment.toml --threads 1 -o out/one-thread\n"
+      "  mpirun --map-by node --bind-to none lockstep compare experiment.toml -o out/cluster");
   auto options = std::make_shared<CompareOptions>();
   add_options(*command, *options);
   command->callback(

@@ -58,7 +58,7 @@ void write_results(const Comparison& comparison, const nlohmann::ordered_json& s
 
 }  // namespace
 
-void run_comparison(const CompareSettings& settings, bool quiet) {
+void run_comparison(const CompareSettings& settings, bool quiet, Desk* desk) {
   ProgressMeter meter(quiet);
   const auto show = [&](double fraction, std::string_view label) {
     meter.show(fraction, label);
@@ -68,7 +68,7 @@ void run_comparison(const CompareSettings& settings, bool quiet) {
   const auto scene_done = [](const Comparison& so_far) {
     write_results(so_far, summarize(so_far));
   };
-  const Comparison comparison = compare(settings, show, scene_done);
+  const Comparison comparison = compare(settings, show, scene_done, desk);
   meter.clear();
   warn(comparison);
   if (interrupted() && comparison.scenes.empty()) {

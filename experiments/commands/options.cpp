@@ -184,6 +184,17 @@ void add_renderer_options(CLI::App& command, RendererOptions& options) {
       ->capture_default_str();
 }
 
+void add_rank_options(CLI::App& command, double& timeout) {
+  command
+      .add_option("--rank-timeout", timeout,
+                  "Under mpirun or srun: what a rank has to do goes to others once it\n"
+                  "has sent nothing for so long")
+      ->type_name("SECONDS")
+      ->check(number_between(0.1, 1e9))
+      ->capture_default_str()
+      ->group("Several machines");
+}
+
 RenderSettings render_settings(const RendererOptions& options) {
   RenderSettings settings;
   settings.isa = choose_isa(options.isa);
@@ -207,10 +218,10 @@ SceneOverrides scene_overrides(const RendererOptions& options) {
 }
 
 SceneDescription read_described(const std::string& scene, const RendererOptions& options,
-                                const SceneOverrides& overrides) {
+                                const SceneOverrides& overrides, bool quiet) {
   SceneDescription description = read_scene(scene, overrides);
   for (const std::string& warning : description.warnings) {
-    fmt::print(stderr, "lockstep: warning: {}\n", warning);
+    if (!quiet) fmt::print(stderr, "lockstep: warning: {}\n", warning);
   }
   if (!options.resolution.empty()) {
     const glm::ivec2 size = parse_resolution(options.resolution);

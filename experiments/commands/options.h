@@ -48,16 +48,19 @@ void refuse_empty_values(CLI::App& program);
 
 void add_renderer_options(CLI::App& command, RendererOptions& options);
 
+// How long a silent rank is waited for, in seconds.
+void add_rank_options(CLI::App& command, double& timeout);
+
 // Threads, width, lanes, instruction set and roulette depth. Throws UsageError, Error.
 RenderSettings render_settings(const RendererOptions& options);
 
 // What is to be changed about the scene. Throws UsageError, Error.
 SceneOverrides scene_overrides(const RendererOptions& options);
 
-// Reads the scene, prints what of it was not understood, and makes the changes that the options ask
-// for. Throws UsageError, Error.
+// Reads the scene, prints what of it was not understood unless quiet, and makes the changes that
+// the options ask for. Throws UsageError, Error.
 SceneDescription read_described(const std::string& scene, const RendererOptions& options,
-                                const SceneOverrides& overrides);
+                                const SceneOverrides& overrides, bool quiet = false);
 
 // "0,0.5,1": numbers from 0 to 1, ascending after sorting; duplicates go. Throws UsageError.
 std::vector<float> parse_weights(std::string_view text);

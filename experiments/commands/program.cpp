@@ -5,6 +5,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/options.h"
 #include "experiments/commands/version_text.h"
+#include "experiments/distributed/ranks.h"
 #include "experiments/output/activity.h"
 #include "experiments/output/crash_handler.h"
 #include "experiments/output/progress.h"
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -20,6 +22,7 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 namespace lockstep {
@@ -27,9 +30,31 @@ namespace {
 
 enum ExitStatus { kDone = 0, kFailed = 1, kWrongUsage = 2 };
 
+// What is wrong with a command line is wrong in all ranks, and rank 0 says it: the others leave it
+// the time to do so, as the launcher ends all once one has ended.
 int report(std::string message, ExitStatus status) {
-  fmt::print(stderr, "lockstep: {}\n", printable(std::move(message), ' '));
+  const int rank = launched_rank().value_or(0);
+  if (rank > 0 && status == kWrongUsage) {
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+  } else {
+    fmt::print(stderr, "lockstep: {}{}\n", rank > 0 ? fmt::format("rank {}: ", rank) : "",
+               printable(std::move(message), ' '));
+  }
+  abort_ranks(status);
   return status;
+}
+
+// Commands that know nothing of other ranks would do the same in all of them.
+void refuse_ranks(const CLI::App& program) {
+  if (!launched_rank()) return;
+  for (const CLI::App* command : program.get_subcommands()) {
+    const std::string name = command->get_name();
+    if (name == "render" || name == "compare") continue;
+    throw UsageError(
+        fmt::format("{} is for one process: start it without mpirun or srun; render and compare "
+                    "spread over several",
+                    name));
+  }
 }
 
 // TBB names the function that gave it no thread; people want to know what to do.
@@ -108,6 +133,7 @@ int run_program(int argc, const char* const* argv) {
   catch_crashes();
   try {
     program.parse(argc, argv);
+    refuse_ranks(program);
     catch_interrupts();
     run();
     return done();

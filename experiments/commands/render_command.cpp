@@ -3,6 +3,9 @@
 #include "core/error.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/options.h"
+#include "experiments/distributed/agreement.h"
+#include "experiments/distributed/session.h"
+#include "experiments/distributed/shared_tiles.h"
 #include "experiments/output/activity.h"
 #include "experiments/output/command_line.h"
 #include "experiments/output/output_file.h"
@@ -25,6 +28,7 @@ struct RenderOptions {
   std::optional<int> spp;
   std::optional<double> time;
   std::uint32_t seed = 0;
+  double rank_timeout = 60.0;
   bool resume = false;
   bool quiet = false;
 };
@@ -85,7 +89,7 @@ RenderSettings settings_for(const RenderOptions& options, RenderSettings setting
 
 void write_outputs(const RenderOptions& options, const SceneOverrides& overrides,
                    const Scene& scene, const SamplerSpec& sampler, const RenderSettings& settings,
-                   const RenderResult& result) {
+                   const RenderResult& result, int ranks) {
   const Metadata changes = override_metadata(overrides);
   Metadata metadata = render_metadata(options.scene, sampler, settings, result);
   metadata.insert(changes.begin(), changes.end());
@@ -97,6 +101,11 @@ void write_outputs(const RenderOptions& options, const SceneOverrides& overrides
   if (!options.stats.empty()) {
     auto json = render_stats_json(options.scene, scene, sampler, settings, result);
     json["overrides"] = changes;
+    if (const Traffic sent = traffic(); sent.messages > 0) {
+      json["ranks"] = ranks;
+      json["messages"] = sent.messages;
+      json["message_bytes"] = sent.bytes;
+    }
     write_text_file(options.stats, json.dump(2) + '\n');
   }
 }
@@ -114,9 +123,27 @@ std::unique_ptr<TevDisplay> make_display(const RenderOptions& options,
   return display;
 }
 
-Scene read_built(const RenderOptions& options, const SceneOverrides& overrides, Isa isa) {
+Scene read_built(const RenderOptions& options, const SceneOverrides& overrides, Isa isa,
+                 bool quiet = false) {
   const Activity reading("reading the scene " + options.scene);
-  return Scene(read_described(options.scene, options.renderer, overrides), embree_isa(isa));
+  return Scene(read_described(options.scene, options.renderer, overrides, quiet), embree_isa(isa));
+}
+
+// Of a rank other than 0: renders tiles for that one.
+void help_render(const RenderOptions& options, const SamplerSpec& sampler,
+                 const RenderSettings& settings, const SceneOverrides& overrides) {
+  std::optional<Scene> scene;
+  Skills skills;
+  skills.prepare = [&] { scene.emplace(read_built(options, overrides, settings.isa, true)); };
+  skills.join = [&](const nlohmann::json&) {
+    RenderSettings own = settings_for(options, settings, scene->description().defaults);
+    own.resume_file.clear();
+    return std::make_unique<TileRenderer>(*scene, sampler, own, [](double) {
+      say_alive();
+      return true;
+    });
+  };
+  help(skills);
 }
 
 void run_render(const RenderOptions& options) {
@@ -124,9 +151,17 @@ void run_render(const RenderOptions& options) {
   const SamplerSpec sampler = parse_sampler(options.sampler);
   RenderSettings settings = render_settings(options.renderer);
   const SceneOverrides overrides = scene_overrides(options.renderer);
-  check_outputs(options, sampler);
   std::optional<TevAddress> address;
   if (!options.display.empty()) address = parse_tev_address(options.display);
+  const Ranks ranks = start_ranks();
+  agree(ranks, settings);
+  if (ranks.rank > 0) {
+    help_render(options, sampler, settings, overrides);
+    end_ranks();
+    return;
+  }
+  check_outputs(options, sampler);
+  Desk desk(ranks, options.rank_timeout);
 
   const Scene scene = read_built(options, overrides, settings.isa);
   settings = settings_for(options, settings, scene.description().defaults);
@@ -137,12 +172,16 @@ void run_render(const RenderOptions& options) {
     return !interrupted();
   };
   const Activity rendering("rendering " + options.output);
-  const RenderResult result = render(scene, sampler, settings, show);
+  const RenderResult result =
+      ranks.count > 1 ? render(scene, sampler, settings, show,
+                               share_tiles(desk, nlohmann::json::object(), settings.threads))
+                      : render(scene, sampler, settings, show);
   meter.clear();
   if (display) display->update(0, 0, result.image);
   report_nonfinite(result.stats, settings);
-  write_outputs(options, overrides, scene, sampler, settings, result);
+  write_outputs(options, overrides, scene, sampler, settings, result, ranks.count);
   if (!options.quiet) report_done(options, settings, result.stats);
+  end_ranks(desk);
 }
 
 void add_options(CLI::App& command, RenderOptions& options) {
@@ -189,6 +228,7 @@ void add_options(CLI::App& command, RenderOptions& options) {
   command.add_flag("--quiet", options.quiet,
                    "No progress and no summary; warnings and errors only");
   add_renderer_options(command, options.renderer);
+  add_rank_options(command, options.rank_timeout);
 }
 
 }  // namespace
@@ -203,7 +243,8 @@ void add_render_command(CLI::App& program, RunCommand& run) {
       "  lockstep render cornell -o cornell.exr --spp 64\n"
       "  lockstep render scene.pbrt -o out.exr --sampler rcs:c=4,t=0.02 --time 30 --stats "
       "out.json\n"
-      "  lockstep render cornell -o out.exr --width 8 --isa avx2 --lanes 2x2x4 --threads 1");
+      "  lockstep render cornell -o out.exr --width 8 --isa avx2 --lanes 2x2x4 --threads 1\n"
+      "  mpirun --map-by node --bind-to none lockstep render scene.pbrt -o out.exr --spp 4096");
   auto options = std::make_shared<RenderOptions>();
   add_options(*command, *options);
   command->callback([options, &run] { run = [options] { run_render(*options); }; });

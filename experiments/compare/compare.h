@@ -71,6 +71,7 @@ struct Measurement {
   int packet_width = 0;  // SIMD lanes
   int threads = 0;
   bool has_weights = false;  // the sampler made a map
+  std::string cpu;           // the name of the one that rendered it
 };
 
 struct SceneComparison;
@@ -86,6 +87,7 @@ struct TimingRepeat {
   int spp = 0;
   double cpu_seconds = 0.0;
   double wall_seconds = 0.0;
+  std::string cpu;
 };
 
 // The spectrum of the error of a sampler's renders at one sample count: powers are averaged, so
@@ -149,9 +151,12 @@ using CompareProgress = std::function<bool(double fraction, std::string_view lab
 // Called when a scene is done at a depth and others follow, with all so far, which is not complete.
 using SceneDone = std::function<void(const Comparison&)>;
 
-// Runs the experiment; the journal and errors.csv in the directory grow row by row, images appear
-// as they are rendered. When stopped, returns what was measured so far. Throws Error, UsageError.
+class Desk;
+
+// Runs the experiment, with the help of other ranks where there is a desk; the journal and
+// errors.csv in the directory grow row by row, images appear as they are rendered. When stopped,
+// returns what was measured so far. Throws Error, UsageError.
 Comparison compare(const CompareSettings& settings, const CompareProgress& progress,
-                   const SceneDone& scene_done = {});
+                   const SceneDone& scene_done = {}, Desk* desk = nullptr);
 
 }  // namespace lockstep

@@ -31,19 +31,19 @@ const SamplerSpec& sampler_of(const Phase& phase, int sampler) {
 }
 
 // Everything but scene, depth, sampler, seed and sample count that a render's error or time depends
-// on. Renders are compared with each other only where it is the same.
+// on, except for the CPU. Renders are compared with each other only where it is the same.
 std::string conditions_of(const Phase& phase) {
   const RenderSettings& settings = phase.render_settings;
   const int threads = settings.threads > 0 ? settings.threads
                                            : int(std::max(1u, std::thread::hardware_concurrency()));
   return fmt::format(
       "scene {:016x} at {}x{}, roulette from {}, {}, width {}, lanes {}, traversal {}, {} kernels, "
-      "{} threads of {}, {}reference {:016x}, version {}",
-      phase.scene.fingerprint(), phase.result.width, phase.result.height, settings.roulette_depth,
+      "{} threads, {}reference {:016x}, version {}",
+      phase.scene->fingerprint(), phase.result.width, phase.result.height, settings.roulette_depth,
       name(settings.isa), settings.width > 0 ? std::to_string(settings.width) : "auto",
       settings.lanes ? to_string(*settings.lanes) : "auto",
       settings.traversal ? to_string(*settings.traversal) : "auto",
-      settings.specialized ? "special" : "general", threads, cpu_name(),
+      settings.specialized ? "special" : "general", threads,
       settings.clamp ? fmt::format("clamped at {}, ", *settings.clamp) : "",
       content_fingerprint(phase.result.reference.image), version());
 }
@@ -98,29 +98,24 @@ JournalEntry entry_of(const Phase& phase, int sampler,
           phase.conditions,   std::move(what),    0};
 }
 
-// The sampler's place in the settings, or -1.
-int place_of(const CompareSettings& settings, const std::string& sampler) {
-  for (std::size_t s = 0; s < settings.samplers.size(); ++s) {
-    if (to_string(settings.samplers[s]) == sampler) return int(s);
-  }
-  return -1;
-}
-
 void check_conditions(const Phase& phase, const JournalEntry& entry) {
   if (entry.conditions == phase.conditions) return;
   throw error_at(
-      phase.journal.path(), entry.line,
+      phase.journal_path, entry.line,
       fmt::format("{} at depth {} was measured under other conditions ({}) than those of "
                   "now ({}); use the same again, or leave out --resume to begin anew",
                   entry.scene, entry.depth, entry.conditions, phase.conditions));
 }
 
-void restore_run(Phase& phase, MeasuredRun measured) {
+bool is_wanted(const CompareSettings& settings, const Measurement& run) {
+  const std::vector<int>& rungs = settings.rungs;
+  return run.seed < std::uint32_t(settings.seeds) &&
+         std::find(rungs.begin(), rungs.end(), run.spp) != rungs.end();
+}
+
+void restore_run(Phase& phase, const MeasuredRun& measured) {
   const Measurement& run = measured.run;
-  const std::vector<int>& rungs = phase.settings.rungs;
-  const bool wanted = run.seed < std::uint32_t(phase.settings.seeds) &&
-                      std::find(rungs.begin(), rungs.end(), run.spp) != rungs.end();
-  if (!wanted || phase.done.contains({run.sampler, run.seed, run.spp})) return;
+  if (phase.done.contains({run.sampler, run.seed, run.spp})) return;
   take_in(phase, measured);
   if (run.seed != 0) return;
   const RunImages images = image_names(phase, run.sampler, run.spp, run.has_weights);
@@ -130,23 +125,31 @@ void restore_run(Phase& phase, MeasuredRun measured) {
   }
 }
 
-// Takes over what an earlier comparison has measured.
-void restore(Phase& phase) {
-  for (const JournalEntry& entry : phase.journal.earlier()) {
-    if (entry.scene != phase.result.scene || entry.depth != phase.result.depth) continue;
-    check_conditions(phase, entry);
-    const int sampler = place_of(phase.settings, entry.sampler);
-    if (sampler < 0) continue;
-    if (const auto* measured = std::get_if<MeasuredRun>(&entry.what)) {
-      MeasuredRun own = *measured;
-      own.run.sampler = sampler;
-      restore_run(phase, std::move(own));
-    } else {
-      TimingRepeat repeat = std::get<TimingRepeat>(entry.what);
-      repeat.sampler = sampler;
-      phase.result.repeats.push_back(repeat);
+// The order in which one process measures: seeds, sample counts, samplers in turn.
+std::tuple<std::uint32_t, int, int> order_of(const CompareSettings& settings,
+                                             const Measurement& run) {
+  const int samplers = int(settings.samplers.size());
+  const auto rung = std::find(settings.rungs.begin(), settings.rungs.end(), run.spp);
+  const int turn = int(run.seed) + int(rung - settings.rungs.begin());
+  return {run.seed, run.spp, ((run.sampler - turn) % samplers + samplers) % samplers};
+}
+
+// For each seed the CPU whose renders count.
+std::map<std::uint32_t, std::string> chosen_cpus(const CompareSettings& settings,
+                                                 const std::vector<MeasuredRun>& runs) {
+  std::map<std::uint32_t, std::map<std::string, std::set<std::pair<int, int>>>> found;
+  for (const MeasuredRun& measured : runs) {
+    const Measurement& run = measured.run;
+    found[run.seed][run.cpu].insert({run.sampler, run.spp});
+  }
+  std::map<std::uint32_t, std::string> chosen;
+  for (const auto& [seed, cpus] : found) {
+    chosen[seed] = cpu_name();
+    for (const auto& [cpu, renders] : cpus) {
+      if (renders.size() == settings.samplers.size() * settings.rungs.size()) chosen[seed] = cpu;
     }
   }
+  return chosen;
 }
 
 // Gives messages about the next render the command that makes it again.
@@ -172,7 +175,7 @@ bool render_whole(Phase& phase, int sampler, const std::string& what, double wor
     return true;
   };
   name_render(phase, sampler_of(phase, sampler));
-  result = render(phase.scene, sampler_of(phase, sampler), settings, show);
+  result = render(*phase.scene, sampler_of(phase, sampler), settings, show);
   return stop;
 }
 
@@ -195,6 +198,7 @@ Measurement measurement_of(const Phase& phase, int sampler, const RenderResult& 
   run.packet_width = stats.width;
   run.threads = stats.threads;
   run.has_weights = render.weights.has_value();
+  run.cpu = cpu_name();
   return run;
 }
 
@@ -209,119 +213,9 @@ void measure(Phase& phase, int sampler, double work_before) {
   const MeasuredRun measured{measurement_of(phase, sampler, render),
                              error_spectrum(phase.result.reference.image, render.image)};
   if (measured.run.seed == 0) keep_images(phase, sampler, render);
-  phase.journal.add(entry_of(phase, sampler, measured));
-  phase.csv.append(phase.result.scene, phase.result.depth, to_string(sampler_of(phase, sampler)),
-                   measured.run);
+  phase.record(entry_of(phase, sampler, measured));
   take_in(phase, measured);
   if (stop) throw Cancelled();
-}
-
-bool all_done(const Phase& phase) {
-  return phase.done.size() == phase.settings.samplers.size() * phase.settings.rungs.size() *
-                                  std::size_t(phase.settings.seeds);
-}
-
-// First renders touch memory and code for the first time: they are made and thrown away.
-void warm_up(Phase& phase, double work) {
-  phase.render_settings.spp = std::min(4, phase.settings.rungs.front());
-  for (const SamplerSpec& sampler : phase.settings.samplers) {
-    name_render(phase, sampler);
-    render(phase.scene, sampler, phase.render_settings,
-           [&](double) { return phase.progress(work, phase.result.label + ": warming up"); });
-  }
-}
-
-// Samplers are innermost and change their order, so that a disturbance of the machine falls on
-// all alike. Returns false where the time ran out.
-bool measure_all(Phase& phase, double work, Clock::time_point deadline) {
-  const int samplers = int(phase.settings.samplers.size());
-  const int rungs = int(phase.settings.rungs.size());
-  Clock::duration longest_seed{};
-  for (int seed = 0; seed < phase.settings.seeds; ++seed) {
-    const Clock::time_point start = Clock::now();
-    if (phase.settings.max_seconds > 0.0 && start + longest_seed > deadline && seed > 0)
-      return false;
-    phase.render_settings.seed = std::uint32_t(seed);
-    for (int rung = 0; rung < rungs; ++rung) {
-      const int spp = phase.settings.rungs[std::size_t(rung)];
-      phase.render_settings.spp = spp;
-      for (int i = 0; i < samplers; ++i) {
-        const int sampler = (i + seed + rung) % samplers;
-        if (!phase.done.contains({sampler, std::uint32_t(seed), spp})) {
-          measure(phase, sampler, work);
-        }
-        work += spp;
-      }
-    }
-    longest_seed = std::max(longest_seed, Clock::now() - start);
-  }
-  return true;
-}
-
-struct UnsteadyRung {
-  int sampler = 0;
-  int spp = 0;
-};
-
-std::vector<UnsteadyRung> unsteady_rungs(const Phase& phase) {
-  std::vector<UnsteadyRung> unsteady;
-  for (std::size_t s = 0; s < phase.settings.samplers.size(); ++s) {
-    for (const auto& [spp, rung] : rungs_of(phase.result, int(s))) {
-      if (median_uncertainty(rung.cpu_times).value_or(0.0) > phase.settings.timing_spread) {
-        unsteady.push_back({int(s), spp});
-      }
-    }
-  }
-  std::stable_sort(unsteady.begin(), unsteady.end(),
-                   [](const UnsteadyRung& a, const UnsteadyRung& b) { return a.spp < b.spp; });
-  return unsteady;
-}
-
-// How many rounds of repeats the result holds.
-int repeats_so_far(const SceneComparison& scene) {
-  std::map<std::pair<int, int>, int> counts;
-  int most = 0;
-  for (const TimingRepeat& repeat : scene.repeats) {
-    most = std::max(most, ++counts[{repeat.sampler, repeat.spp}]);
-  }
-  return most;
-}
-
-// Renders again, for their times alone, the rungs whose times spread too far, in turn.
-void repeat_unsteady(Phase& phase, double work) {
-  const int most = phase.settings.timing_repeats.value_or((phase.settings.seeds + 1) / 2);
-  for (int round = repeats_so_far(phase.result); round < most; ++round) {
-    const std::vector<UnsteadyRung> unsteady = unsteady_rungs(phase);
-    if (unsteady.empty()) return;
-    for (std::size_t i = 0; i < unsteady.size(); ++i) {
-      const auto [sampler, spp] = unsteady[(i + std::size_t(round)) % unsteady.size()];
-      phase.render_settings.seed = std::uint32_t(round % phase.settings.seeds);
-      phase.render_settings.spp = spp;
-      const std::string what = fmt::format("timed again, {} of at most {}", round + 1, most);
-      RenderResult render;
-      const bool stop = render_whole(phase, sampler, what, work - spp, render);
-      const TimingRepeat repeat{sampler, phase.render_settings.seed, spp, render.stats.cpu_seconds,
-                                render.stats.wall_seconds};
-      phase.journal.add(entry_of(phase, sampler, repeat));
-      phase.result.repeats.push_back(repeat);
-      if (stop) throw Cancelled();
-    }
-  }
-}
-
-void prepare_reference(Phase& phase, double work) {
-  const Activity preparing("the reference of " + phase.result.scene);
-  const auto show = [&](double fraction) {
-    return phase.progress(fraction * work, phase.result.label + ": reference");
-  };
-  SceneComparison& result = phase.result;
-  result.reference =
-      make_reference(phase.settings, result, phase.scene, phase.render_settings, show);
-  phase.reference = prepare_reference(result.reference.image);
-  result.exposure = preview_exposure(result.reference.image);
-  result.reference_png = fmt::format("{}-reference.png", result.label);
-  write_image(in_directory(phase.settings, result.reference_png),
-              exposed(result.reference.image, result.exposure));
 }
 
 }  // namespace
@@ -334,6 +228,166 @@ std::string command_of(const SceneComparison& scene, const CompareSettings& sett
                         scene.width, scene.height, override_metadata(settings.overrides));
 }
 
+int place_of(const CompareSettings& settings, const std::string& sampler) {
+  for (std::size_t s = 0; s < settings.samplers.size(); ++s) {
+    if (to_string(settings.samplers[s]) == sampler) return int(s);
+  }
+  return -1;
+}
+
+void restore(Phase& phase) {
+  std::vector<MeasuredRun> runs;
+  for (const JournalEntry& entry : phase.earlier) {
+    if (entry.scene != phase.result.scene || entry.depth != phase.result.depth) continue;
+    check_conditions(phase, entry);
+    const int sampler = place_of(phase.settings, entry.sampler);
+    if (sampler < 0) continue;
+    if (const auto* measured = std::get_if<MeasuredRun>(&entry.what)) {
+      MeasuredRun own = *measured;
+      own.run.sampler = sampler;
+      if (is_wanted(phase.settings, own.run)) runs.push_back(std::move(own));
+    } else {
+      TimingRepeat repeat = std::get<TimingRepeat>(entry.what);
+      repeat.sampler = sampler;
+      phase.result.repeats.push_back(repeat);
+    }
+  }
+  std::stable_sort(runs.begin(), runs.end(), [&](const MeasuredRun& a, const MeasuredRun& b) {
+    return order_of(phase.settings, a.run) < order_of(phase.settings, b.run);
+  });
+  const std::map<std::uint32_t, std::string> cpus = chosen_cpus(phase.settings, runs);
+  for (const MeasuredRun& run : runs) {
+    if (run.run.cpu == cpus.at(run.run.seed)) restore_run(phase, run);
+  }
+}
+
+bool all_done(const Phase& phase) {
+  return phase.done.size() == phase.settings.samplers.size() * phase.settings.rungs.size() *
+                                  std::size_t(phase.settings.seeds);
+}
+
+void warm_up(Phase& phase, double work) {
+  phase.render_settings.spp = std::min(4, phase.settings.rungs.front());
+  for (const SamplerSpec& sampler : phase.settings.samplers) {
+    name_render(phase, sampler);
+    render(*phase.scene, sampler, phase.render_settings,
+           [&](double) { return phase.progress(work, phase.result.label + ": warming up"); });
+  }
+}
+
+// Samplers are innermost and change their order, so that a disturbance of the machine falls on
+// all alike.
+void measure_seed(Phase& phase, int seed, double work) {
+  const int samplers = int(phase.settings.samplers.size());
+  const int rungs = int(phase.settings.rungs.size());
+  phase.render_settings.seed = std::uint32_t(seed);
+  for (int rung = 0; rung < rungs; ++rung) {
+    const int spp = phase.settings.rungs[std::size_t(rung)];
+    phase.render_settings.spp = spp;
+    for (int i = 0; i < samplers; ++i) {
+      const int sampler = (i + seed + rung) % samplers;
+      if (!phase.done.contains({sampler, std::uint32_t(seed), spp})) measure(phase, sampler, work);
+      work += spp;
+    }
+  }
+}
+
+std::vector<UnsteadyRung> unsteady_rungs(const SceneComparison& scene,
+                                         const CompareSettings& settings) {
+  std::vector<UnsteadyRung> unsteady;
+  for (std::size_t s = 0; s < settings.samplers.size(); ++s) {
+    for (const auto& [spp, rung] : rungs_of(scene, int(s))) {
+      if (median_uncertainty(rung.cpu_times).value_or(0.0) > settings.timing_spread) {
+        unsteady.push_back({int(s), spp});
+      }
+    }
+  }
+  std::stable_sort(unsteady.begin(), unsteady.end(),
+                   [](const UnsteadyRung& a, const UnsteadyRung& b) { return a.spp < b.spp; });
+  return unsteady;
+}
+
+int repeats_so_far(const SceneComparison& scene) {
+  std::map<std::pair<int, int>, int> counts;
+  int most = 0;
+  for (const TimingRepeat& repeat : scene.repeats) {
+    most = std::max(most, ++counts[{repeat.sampler, repeat.spp}]);
+  }
+  return most;
+}
+
+int most_repeats(const CompareSettings& settings) {
+  return settings.timing_repeats.value_or((settings.seeds + 1) / 2);
+}
+
+void repeat_round(Phase& phase, int round, const std::vector<UnsteadyRung>& unsteady, double work) {
+  for (std::size_t i = 0; i < unsteady.size(); ++i) {
+    const auto [sampler, spp] = unsteady[(i + std::size_t(round)) % unsteady.size()];
+    phase.render_settings.seed = std::uint32_t(round % phase.settings.seeds);
+    phase.render_settings.spp = spp;
+    const std::string what =
+        fmt::format("timed again, {} of at most {}", round + 1, most_repeats(phase.settings));
+    RenderResult render;
+    const bool stop = render_whole(phase, sampler, what, work - spp, render);
+    const TimingRepeat repeat{sampler,
+                              phase.render_settings.seed,
+                              spp,
+                              render.stats.cpu_seconds,
+                              render.stats.wall_seconds,
+                              cpu_name()};
+    phase.record(entry_of(phase, sampler, repeat));
+    phase.result.repeats.push_back(repeat);
+    if (stop) throw Cancelled();
+  }
+}
+
+void open_phase(Phase& phase, double reference_work) {
+  const Activity preparing("the reference of " + phase.result.scene);
+  const auto show = [&](double fraction) {
+    return phase.progress(fraction * reference_work, phase.result.label + ": reference");
+  };
+  SceneComparison& result = phase.result;
+  result.reference = make_reference(phase.settings, result, *phase.scene, phase.render_settings,
+                                    show, phase.render_half);
+  phase.reference = prepare_reference(result.reference.image);
+  result.exposure = preview_exposure(result.reference.image);
+  result.reference_png = fmt::format("{}-reference.png", result.label);
+  phase.conditions = conditions_of(phase);
+}
+
+void show_reference(Phase& phase) {
+  const SceneComparison& result = phase.result;
+  write_image(in_directory(phase.settings, result.reference_png),
+              exposed(result.reference.image, result.exposure));
+}
+
+namespace {
+
+// Returns false where the time ran out.
+bool measure_all(Phase& phase, double work, Clock::time_point deadline) {
+  Clock::duration longest_seed{};
+  for (int seed = 0; seed < phase.settings.seeds; ++seed) {
+    const Clock::time_point start = Clock::now();
+    if (phase.settings.max_seconds > 0.0 && start + longest_seed > deadline && seed > 0)
+      return false;
+    measure_seed(phase, seed, work);
+    work += work_per_seed(phase.settings);
+    longest_seed = std::max(longest_seed, Clock::now() - start);
+  }
+  return true;
+}
+
+// Renders again, for their times alone, the rungs whose times spread too far, in turn.
+void repeat_unsteady(Phase& phase, double work) {
+  for (int round = repeats_so_far(phase.result); round < most_repeats(phase.settings); ++round) {
+    const std::vector<UnsteadyRung> unsteady = unsteady_rungs(phase.result, phase.settings);
+    if (unsteady.empty()) return;
+    repeat_round(phase, round, unsteady, work);
+  }
+}
+
+}  // namespace
+
 double work_per_seed(const CompareSettings& settings) {
   double work = 0.0;
   for (int spp : settings.rungs) work += spp * double(settings.samplers.size());
@@ -341,8 +395,8 @@ double work_per_seed(const CompareSettings& settings) {
 }
 
 bool run_phase(Phase& phase, double reference_work, Clock::time_point deadline) {
-  prepare_reference(phase, reference_work);
-  phase.conditions = conditions_of(phase);
+  open_phase(phase, reference_work);
+  show_reference(phase);
   restore(phase);
   if (!all_done(phase)) warm_up(phase, reference_work);
   if (!measure_all(phase, reference_work, deadline)) return false;

@@ -2,6 +2,9 @@
 
 #include "experiments/metrics/metrics.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <set>
 
@@ -80,6 +83,22 @@ std::optional<Ratio> ratio_at(const Rungs& rungs, const Rungs& base, std::size_t
   return ratio_of(rungs, base, metric, [time](std::vector<CurvePoint> curve) {
     return error_at(std::move(curve), time);
   });
+}
+
+std::string unlike_machines(const SceneComparison& scene) {
+  std::map<std::string, int> renders;
+  for (const Measurement& run : scene.runs) ++renders[run.cpu];
+  for (const TimingRepeat& repeat : scene.repeats) ++renders[repeat.cpu];
+  if (renders.size() < 2) return {};
+  std::vector<std::string> parts;
+  for (const auto& [cpu, count] : renders) {
+    parts.push_back(fmt::format("{} on {}", count, cpu.empty() ? "an unknown CPU" : cpu));
+  }
+  return fmt::format(
+      "Times are from unlike machines (renders: {}): those of one seed are from one of them and "
+      "may "
+      "be compared, medians over seeds mix them.",
+      fmt::join(parts, ", "));
 }
 
 bool is_near_reference(const Reference& reference, const Rung& rung, std::size_t metric) {

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace lockstep {
@@ -39,6 +40,10 @@ std::optional<TimeRange> common_times(const std::vector<Rungs>& samplers);
 // where no seed of both covers the time, or an error is zero.
 std::optional<Ratio> ratio_at(const Rungs& rungs, const Rungs& base, std::size_t metric,
                               double time);
+
+// What to know about the times where CPUs of several names rendered the scene: a sentence; empty
+// where one did.
+std::string unlike_machines(const SceneComparison& scene);
 
 // True where the rung's median of the metric is below three times what the reference itself is off
 // by: much of it may be the reference's. False where that is not known.

@@ -25,7 +25,7 @@ std::string csv_field(std::string_view text) {
 std::string errors_csv_header() {
   std::string line = "scene,sampler,seed,spp,cpu_seconds,wall_seconds";
   for (const Metric& metric : metrics()) line += fmt::format(",{}", metric.name);
-  return line + ",depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads";
+  return line + ",depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads,cpu";
 }
 
 std::string errors_csv_row(std::string_view scene, int depth, std::string_view sampler,
@@ -33,9 +33,9 @@ std::string errors_csv_row(std::string_view scene, int depth, std::string_view s
   std::string line = fmt::format("{},{},{},{},{},{}", csv_field(scene), csv_field(sampler),
                                  run.seed, run.spp, run.cpu_seconds, run.wall_seconds);
   for (double error : run.errors) line += fmt::format(",{}", error);
-  return line + fmt::format(",{},{},{},{},{},{},{},{}", depth, run.pilot_spp, run.mean_weight,
+  return line + fmt::format(",{},{},{},{},{},{},{},{},{}", depth, run.pilot_spp, run.mean_weight,
                             to_string(run.lanes), run.lanes_active, run.nonfinite, run.packet_width,
-                            run.threads);
+                            run.threads, csv_field(run.cpu));
 }
 
 std::string spectra_csv(const Comparison& comparison) {

@@ -14,8 +14,8 @@ namespace lockstep {
 std::string csv_field(std::string_view text);
 
 // scene,sampler,seed,spp,cpu_seconds,wall_seconds, then the metrics in the order of metrics(), then
-// depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads. Numbers have all their
-// digits.
+// depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads,cpu. Numbers have all
+// their digits.
 std::string errors_csv_header();
 std::string errors_csv_row(std::string_view scene, int depth, std::string_view sampler,
                            const Measurement& run);

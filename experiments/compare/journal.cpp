@@ -43,6 +43,7 @@ Json run_json(const MeasuredRun& measured) {
           {"width", run.packet_width},
           {"threads", run.threads},
           {"weights", run.has_weights},
+          {"cpu", run.cpu},
           {"errors", errors},
           {"spectrum", {{"white", measured.spectrum.white}, {"rings", rings}}}};
 }
@@ -66,6 +67,7 @@ MeasuredRun parse_run(const Json& json) {
   run.packet_width = json.at("width");
   run.threads = json.at("threads");
   run.has_weights = json.at("weights");
+  run.cpu = json.at("cpu");
   for (const Metric& metric : metrics()) {
     run.errors.push_back(number(json.at("errors").at(std::string(metric.name))));
   }
@@ -81,12 +83,17 @@ Json repeat_json(const TimingRepeat& repeat) {
   return {{"seed", repeat.seed},
           {"spp", repeat.spp},
           {"cpu_seconds", repeat.cpu_seconds},
-          {"wall_seconds", repeat.wall_seconds}};
+          {"wall_seconds", repeat.wall_seconds},
+          {"cpu", repeat.cpu}};
 }
 
 TimingRepeat parse_repeat(const Json& json) {
-  return {0, json.at("seed"), json.at("spp"), number(json.at("cpu_seconds")),
-          number(json.at("wall_seconds"))};
+  return {0,
+          json.at("seed"),
+          json.at("spp"),
+          number(json.at("cpu_seconds")),
+          number(json.at("wall_seconds")),
+          json.at("cpu")};
 }
 
 Json entry_json(const JournalEntry& entry) {
@@ -172,9 +179,23 @@ Journal::Journal(const std::string& directory, bool resume)
   }
 }
 
-void Journal::add(const JournalEntry& entry) { file_.append(line_of(entry_json(entry))); }
+void Journal::add(const JournalEntry& entry) { file_.append(journal_line(entry)); }
+
+void Journal::take_over(const std::vector<JournalEntry>& entries) {
+  earlier_.insert(earlier_.end(), entries.begin(), entries.end());
+}
 
 void Journal::add_note(const Json& note) { file_.append(line_of({{"note", note}})); }
+
+std::string journal_line(const JournalEntry& entry) { return line_of(entry_json(entry)); }
+
+JournalEntry parse_journal_line(const std::string& text) {
+  try {
+    return parse_entry(Json::parse(text), 0);
+  } catch (const std::exception& error) {
+    throw Error(fmt::format("not a line of a journal: {}", error.what()));
+  }
+}
 
 std::vector<Json> read_journal_lines(const std::string& path) {
   return parse_lines(whole_lines(text_of(path)));

@@ -41,6 +41,8 @@ class Journal {
 
   // Throw Error where the line cannot be written; the journal is then as it was.
   void add(const JournalEntry& entry);
+  // Counts entries that were added as earlier ones.
+  void take_over(const std::vector<JournalEntry>& entries);
   void add_note(const nlohmann::ordered_json& note);  // for `lockstep runs`
 
  private:
@@ -50,6 +52,10 @@ class Journal {
 };
 
 constexpr std::string_view kJournalFile = "journal.jsonl";
+
+// An entry as a line of its own, and back; `line` is 0. Throws Error where it is none.
+std::string journal_line(const JournalEntry& entry);
+JournalEntry parse_journal_line(const std::string& text);
 
 // The lines of a journal, as far as they are whole; those that are not JSON are null.
 std::vector<nlohmann::ordered_json> read_journal_lines(const std::string& path);

@@ -139,6 +139,16 @@ std::string rendered_origin(int spp, bool cached) {
 
 }  // namespace
 
+SamplerSpec reference_sampler() { return parse_sampler("owen"); }
+
+RenderSettings half_settings(const CompareSettings& settings, RenderSettings render_settings,
+                             int half) {
+  render_settings.spp = reference_spp(settings) / 2;
+  render_settings.clamp.reset();  // the truth is not biased
+  render_settings.seed = kHalfSeeds[half];
+  return render_settings;
+}
+
 int reference_spp(const CompareSettings& settings) {
   const int longest = *std::max_element(settings.rungs.begin(), settings.rungs.end());
   const int spp = settings.reference_spp > 0
@@ -159,7 +169,7 @@ bool has_reference(const CompareSettings& settings, const SceneComparison& compa
 
 Reference make_reference(const CompareSettings& settings, const SceneComparison& comparison,
                          const Scene& scene, RenderSettings render_settings,
-                         const Progress& progress) {
+                         const Progress& progress, const RenderHalf& render_half) {
   if (!settings.reference_file.empty()) return read_given(settings, comparison);
 
   Reference reference;
@@ -173,22 +183,21 @@ Reference make_reference(const CompareSettings& settings, const SceneComparison&
     return reference;
   }
 
-  render_settings.spp = reference.spp / 2;
-  render_settings.clamp.reset();  // the truth is not biased
   Image halves[2];
   const auto state_file = [&](int half) {
     return fmt::format("{}.half{}.state", reference.file, half);
   };
   for (int half = 0; half < 2; ++half) {
-    render_settings.seed = kHalfSeeds[half];
-    render_settings.resume_file = state_file(half);
-    const SamplerSpec owen = parse_sampler("owen");
-    render_settings.scene_name = comparison.scene;
-    render_settings.command =
-        render_command(comparison.scene, owen, render_settings, comparison.width, comparison.height,
-                       override_metadata(settings.overrides));
+    RenderSettings own = half_settings(settings, render_settings, half);
+    own.resume_file = state_file(half);
+    const SamplerSpec sampler = reference_sampler();
+    own.scene_name = comparison.scene;
+    own.command = render_command(comparison.scene, sampler, own, comparison.width,
+                                 comparison.height, override_metadata(settings.overrides));
     const auto show = [&](double f) { return !progress || progress(0.5 * (half + f)); };
-    halves[half] = render(scene, owen, render_settings, show).image;
+    halves[half] = (render_half ? render_half(scene, sampler, own, half, show)
+                                : render(scene, sampler, own, show))
+                       .image;
   }
   auto [image, relmse] = average(halves[0], halves[1]);
   reference.image = std::move(image);

@@ -161,6 +161,8 @@ std::string results_table(const Json& summary) {
     text += fmt::format("\nAll renders are {}.\n", clamp_text(clamp.get<float>()));
   for (const Json& scene : summary["scenes"]) {
     text += scene_header(scene);
+    const std::string unlike = scene.value("unlike_machines", "");
+    if (!unlike.empty()) text += "  " + wrapped(unlike);
     const Json& budgets = scene["equal_time"]["budgets"];
     for (const Json& budget : budgets) text += equal_time_table(summary, scene, budget);
     if (budgets.empty()) text += rung_table(summary, scene);

@@ -197,6 +197,7 @@ Json scene_json(const SceneComparison& scene, const CompareSettings& settings,
                {"features", scene.features},
                {"left_out", scene.left_out},
                {"warnings", scene.warnings},
+               {"unlike_machines", unlike_machines(scene)},
                {"exposure", scene.exposure},
                {"reference", reference_json(scene)},
                {"frequencies", frequencies_json(scene)}};

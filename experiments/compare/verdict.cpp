@@ -205,6 +205,7 @@ std::string further_text(const SceneComparison& scene, const CompareSettings& se
     const std::string sentence = time_sentence(to, settings);
     if (!sentence.empty()) times.push_back(sentence);
   }
+  if (const std::string unlike = unlike_machines(scene); !unlike.empty()) text += ' ' + unlike;
   if (!times.empty()) text += fmt::format(" In time: {}.", fmt::join(times, "; "));
   const std::string unsteady = rungs_text(settings, rungs, [&](const Rung& rung) {
     return median_uncertainty(rung.cpu_times).value_or(0.0) > settings.timing_spread;

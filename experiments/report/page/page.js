@@ -31,6 +31,7 @@ function sceneSection(scene, k) {
   fact(facts, "Packet width", `${scene.width} lanes`);
   fact(facts, "Threads", scene.threads);
   fact(facts, "Exposure in images", number(scene.exposure));
+  if (scene.unlike_machines) section.append("p").attr("class", "note").text(scene.unlike_machines);
   errorPlots(section, scene);
   if (imageIndex[k]) imageViewer(section, scene, imageIndex[k]);
   spectrumPlots(section, scene);
