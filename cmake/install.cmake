@@ -5,7 +5,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(library_targets lockstep_options lockstep_core lockstep_samplers lockstep_packets lockstep_metrics
-    lockstep_experiments lockstep_commands)
+    lockstep_ranks lockstep_experiments lockstep_commands)
 set(module_folder ${CMAKE_INSTALL_LIBDIR}/lockstep)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/lockstep)
 
