@@ -21,7 +21,7 @@
 namespace lockstep {
 namespace {
 
-constexpr double turn = 6.283185307179586;
+constexpr double full_turn = 6.283185307179586;
 
 // Where a coordinate lies between the values of an axis, of which there may be one.
 struct AxisPlace {
@@ -49,7 +49,7 @@ struct Blend {
   std::array<double, 4> weight{};
 };
 
-double mix(double a, double b, double t) { return a + t * (b - a); }
+double between(double a, double b, double t) { return a + t * (b - a); }
 
 // Grids over the unit square, rows along y, one after the other, `channels` values per node.
 struct Grids {
@@ -68,10 +68,10 @@ struct Grids {
   double at(const Blend& blend, glm::dvec2 p, std::size_t channel = 0) const {
     const AxisPlace x = place_in_grid(p.x, width), y = place_in_grid(p.y, height);
     const auto row = [&](std::size_t j) {
-      return mix(value(blend, x.first, j, channel), value(blend, x.first + 1, j, channel),
-                 x.within);
+      return between(value(blend, x.first, j, channel), value(blend, x.first + 1, j, channel),
+                     x.within);
     };
-    return mix(row(y.first), row(y.first + 1), y.within);
+    return between(row(y.first), row(y.first + 1), y.within);
   }
 };
 
@@ -88,8 +88,8 @@ struct Warp {
     const std::size_t last = density.width - 1;
     const AxisPlace x = place_in_grid(p.x, density.width), y = place_in_grid(p.y, density.height);
     const auto between_rows = [&](const Grids& grids, std::size_t column) {
-      return mix(grids.value(blend, column, y.first), grids.value(blend, column, y.first + 1),
-                 y.within);
+      return between(grids.value(blend, column, y.first), grids.value(blend, column, y.first + 1),
+                     y.within);
     };
     // Of x in [0, t], a linear density from a to b has the integral t (a + t (b - a) / 2).
     const auto part = [](double a, double b, double t) { return t * (a + 0.5 * t * (b - a)); };
@@ -137,9 +137,9 @@ Warp make_warp(const TensorFile& file, Grids density) {
   return warp;
 }
 
-class Material {
+class RglMaterial {
  public:
-  explicit Material(const TensorFile& file);
+  explicit RglMaterial(const TensorFile& file);
 
   bool is_isotropic() const { return phi_.size() <= 2; }
 
@@ -159,7 +159,8 @@ class Material {
   Grids colors_;
 };
 
-void Material::read_axis(const TensorFile& file, const char* name, std::vector<float>& axis) const {
+void RglMaterial::read_axis(const TensorFile& file, const char* name,
+                            std::vector<float>& axis) const {
   axis = file.floats(name, 1).values;
   if (std::adjacent_find(axis.begin(), axis.end(), std::greater_equal<>()) != axis.end()) {
     file.fail(fmt::format("field \"{}\" does not increase", name));
@@ -167,7 +168,8 @@ void Material::read_axis(const TensorFile& file, const char* name, std::vector<f
 }
 
 // Of one slice or, with more dimensions, one per azimuth and elevation of wi.
-Grids Material::read_grids(const TensorFile& file, const char* name, std::size_t dimensions) const {
+Grids RglMaterial::read_grids(const TensorFile& file, const char* name,
+                              std::size_t dimensions) const {
   FloatTensor tensor = file.floats(name, dimensions);
   const std::vector<std::size_t>& shape = tensor.shape;
   const std::size_t width = shape[dimensions - 1], height = shape[dimensions - 2];
@@ -184,20 +186,20 @@ Grids Material::read_grids(const TensorFile& file, const char* name, std::size_t
 }
 
 // Colours of nodes, from planes of "rgb" or of the wavelengths of "spectra".
-void Material::read_colors(const TensorFile& file) {
+void RglMaterial::read_colors(const TensorFile& file) {
   const bool rgb = file.has("rgb");
   const char* const name = rgb ? "rgb" : "spectra";
-  const std::size_t planes = file.floats(name, 5).shape[2];
+  const Grids source = read_grids(file, name, 5);
+  const std::size_t nodes = source.width * source.height;
+  const std::size_t slices = phi_.size() * theta_.size();
+  const std::size_t planes = source.values.size() / (nodes * slices);
   std::vector<float> wavelengths{700.0f, 550.0f, 450.0f};
   if (!rgb) read_axis(file, "wavelengths", wavelengths);
   if (planes != wavelengths.size()) {
     file.fail(fmt::format("field \"{}\" has {} planes; {} are expected", name, planes,
                           wavelengths.size()));
   }
-  Grids source = read_grids(file, name, 5);
   colors_ = {source.width, source.height, 3, {}};
-  const std::size_t nodes = source.width * source.height;
-  const std::size_t slices = phi_.size() * theta_.size();
   colors_.values.resize(3 * nodes * slices);
   tbb::parallel_for(std::size_t(0), slices, [&](std::size_t slice) {
     std::vector<glm::dvec2> spectrum;
@@ -217,7 +219,7 @@ void Material::read_colors(const TensorFile& file) {
   });
 }
 
-Material::Material(const TensorFile& file) {
+RglMaterial::RglMaterial(const TensorFile& file) {
   read_axis(file, "phi_i", phi_);
   read_axis(file, "theta_i", theta_);
   normals_ = read_grids(file, "ndf", 2);
@@ -225,13 +227,13 @@ Material::Material(const TensorFile& file) {
   visible_normals_ = make_warp(file, read_grids(file, "vndf", 4));
   read_colors(file);
   if (is_isotropic()) return;
-  symmetry_ = int(std::lround(turn / double(phi_.back() - phi_.front())));
+  symmetry_ = int(std::lround(full_turn / double(phi_.back() - phi_.front())));
   if (symmetry_ != 1 && symmetry_ != 2 && symmetry_ != 4) {
     file.fail("field \"phi_i\" covers neither a turn nor a half or a quarter of one");
   }
 }
 
-Blend Material::blend_at(double phi, double theta) const {
+Blend RglMaterial::blend_at(double phi, double theta) const {
   const AxisPlace p = place_on(phi_, phi), t = place_on(theta_, theta);
   const std::size_t across = phi_.size() > 1 ? theta_.size() : 0, up = theta_.size() > 1 ? 1 : 0;
   const std::size_t corner = p.first * theta_.size() + t.first;
@@ -244,11 +246,11 @@ double theta_of(glm::dvec3 w) { return std::atan2(std::hypot(w.x, w.y), w.z); }
 
 // The place of a direction in a grid over all those above the surface.
 glm::dvec2 place_of(double theta, double phi) {
-  const double turns = phi / turn + 0.5;
-  return {std::sqrt(theta * 4.0 / turn), turns - std::floor(turns)};
+  const double turns = phi / full_turn + 0.5;
+  return {std::sqrt(theta * 4.0 / full_turn), turns - std::floor(turns)};
 }
 
-glm::dvec3 Material::reflectance(glm::dvec3 wi, glm::dvec3 wo) const {
+glm::dvec3 RglMaterial::reflectance(glm::dvec3 wi, glm::dvec3 wo) const {
   // Measured were azimuths from -pi to 0, or to -pi / 2.
   if (symmetry_ == 2 && wi.y > 0.0) wi.x = -wi.x, wi.y = -wi.y, wo.x = -wo.x, wo.y = -wo.y;
   if (symmetry_ == 4 && wi.x > 0.0) wi.x = -wi.x, wo.x = -wo.x;
@@ -259,27 +261,27 @@ glm::dvec3 Material::reflectance(glm::dvec3 wi, glm::dvec3 wo) const {
   const glm::dvec2 at = place_of(theta_of(m), std::atan2(m.y, m.x) - (is_isotropic() ? phi : 0.0));
   const glm::dvec2 node = visible_normals_.inverse(blend, at);
   const double area = area_.at(only_slice, place_of(theta, phi));
-  const double scale = normals_.at(only_slice, at) / std::max(4.0 * area * wo.z, 1e-6);
+  const double factor = normals_.at(only_slice, at) / std::max(4.0 * area * wo.z, 1e-6);
   glm::dvec3 color;
   for (std::size_t c = 0; c < 3; ++c) {
-    color[glm::length_t(c)] = std::max(colors_.at(blend, node, c), 0.0) * scale;
+    color[glm::length_t(c)] = std::max(colors_.at(blend, node, c), 0.0) * factor;
   }
   return color;
 }
 
-glm::dvec3 turned(glm::vec3 w, double angle) {
+glm::dvec3 rotated(glm::vec3 w, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * double(w.x) - s * double(w.y), s * double(w.x) + c * double(w.y), double(w.z)};
 }
 
 // With the directions swapped, too, as files are not quite reciprocal; of surfaces with a grain the
 // mean over its orientations.
-glm::vec3 mean_reflectance(const Material& material, const DirectionPair& pair) {
+glm::vec3 mean_reflectance(const RglMaterial& material, const DirectionPair& pair) {
   const int orientations = material.is_isotropic() ? 1 : 8;
   glm::dvec3 sum(0.0);
   for (int i = 0; i < orientations; ++i) {
-    const double angle = turn * (i + 0.5) / orientations;
-    const glm::dvec3 wo = turned(pair.wo, angle), wi = turned(pair.wi, angle);
+    const double angle = full_turn * (i + 0.5) / orientations;
+    const glm::dvec3 wo = rotated(pair.wo, angle), wi = rotated(pair.wi, angle);
     sum += material.reflectance(wi, wo) + material.reflectance(wo, wi);
   }
   return glm::vec3(sum / (2.0 * orientations));
@@ -288,7 +290,7 @@ glm::vec3 mean_reflectance(const Material& material, const DirectionPair& pair) 
 }  // namespace
 
 RglCells read_rgl(const std::string& path) {
-  const Material material{TensorFile(path)};
+  const RglMaterial material{TensorFile(path)};
   RglCells result;
   result.isotropic = material.is_isotropic();
   tbb::parallel_for(0, measured_halves, [&](int h) {

@@ -16,11 +16,11 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr std::string_view magic("tensor_file\0\1\0", 14);
-constexpr std::uintmax_t most_bytes = 512u << 20;
+constexpr std::string_view tensor_magic("tensor_file\0\1\0", 14);
+constexpr std::uintmax_t most_tensor_bytes = 512u << 20;
 constexpr std::uint32_t most_fields = 256;
 constexpr std::size_t most_dimensions = 8;
-constexpr std::uint8_t float32 = 10;
+constexpr std::uint8_t float32_type = 10;
 
 }  // namespace
 
@@ -30,16 +30,16 @@ TensorFile::TensorFile(const std::string& path) : path_(path) {
   std::ifstream in;
   if (!failed) in.open(path, std::ios::binary);
   if (failed || !in) throw Error(path + ": cannot be read; check the path");
-  if (size > most_bytes) {
-    fail(fmt::format("has {} MiB; such files may have {}", size >> 20, most_bytes >> 20));
+  if (size > most_tensor_bytes) {
+    fail(fmt::format("has {} MiB; such files may have {}", size >> 20, most_tensor_bytes >> 20));
   }
   bytes_.resize(size);
   in.read(bytes_.data(), std::streamsize(size));
   if (!in) fail("cannot be read to its end");
-  if (!std::string_view(bytes_).starts_with(magic)) {
+  if (!std::string_view(bytes_).starts_with(tensor_magic)) {
     fail("is no file of RGL's tensors, version 1.0");
   }
-  std::size_t at = magic.size();
+  std::size_t at = tensor_magic.size();
   const auto count = take<std::uint32_t>(at);
   if (count > most_fields) fail(fmt::format("claims {} fields, more than {}", count, most_fields));
   for (std::uint32_t i = 0; i < count; ++i) read_field(at);
@@ -72,7 +72,7 @@ FloatTensor TensorFile::floats(const std::string& name, std::size_t dimensions) 
   const auto found = fields_.find(name);
   if (found == fields_.end()) fail(fmt::format("has no field \"{}\"", name));
   const Field& field = found->second;
-  if (field.type != float32 || field.shape.size() != dimensions) {
+  if (field.type != float32_type || field.shape.size() != dimensions) {
     fail(fmt::format("field \"{}\" should have {} dimensions of float32", name, dimensions));
   }
   std::uint64_t count = 1;
