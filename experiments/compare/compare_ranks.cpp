@@ -25,7 +25,7 @@
 namespace lockstep {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr double kLastRenderSeconds = 10.0;
 constexpr double kSharedFileSeconds = 20.0;  // until a file of another machine is seen
