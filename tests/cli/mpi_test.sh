@@ -119,7 +119,7 @@ kill -KILL "$hung" 2>/dev/null
 same_results hung
 
 # A render that is killed goes on from its state.
-image="render cornell --resolution 300x220 --seed 3 --spp 400 --threads 1 --sampler owen --quiet"
+image="render cornell --resolution 300x220 --seed 3 --spp 192 --threads 1 --sampler owen --quiet"
 ranks 3 $image -o killed.exr --resume 2>stderr &
 launcher=$!
 for i in $(seq 600); do [ -e killed.exr.state ] && break; sleep 0.05; done
