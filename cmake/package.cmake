@@ -17,14 +17,12 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # by dpkg-shlibdeps, of the package dpkg-dev
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lockstep)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
-set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}
-All pixels of a tile follow one shared random sequence, so neighbouring rays stay together and a SIMD
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "All pixels of a tile follow one shared random sequence, so neighbouring rays stay together and a SIMD
 packet traces them in lockstep. The renderer measures what that buys in speed and what it costs or
 saves in perceived error, in the same run, at equal time.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME liblockstep-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "${PROJECT_DESCRIPTION} (libraries and headers)
-Static libraries, headers and the CMake package of Lockstep, for programs that add samplers or metrics
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "Static libraries, headers and the CMake package of Lockstep, for programs that add samplers or metrics
 or that render by themselves.")
 # What the CMake package looks for: the libraries of packages.txt, without tools, tests and images.
 file(STRINGS packages.txt libraries REGEX "-dev$")

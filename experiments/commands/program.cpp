@@ -112,9 +112,7 @@ void describe(CLI::App& program) {
   program.formatter(formatter);
 }
 
-}  // namespace
-
-int run_program(int argc, const char* const* argv) {
+int run_subcommand(int argc, const char* const* argv) {
   CLI::App program;
   describe(program);
   RunCommand run;
@@ -150,6 +148,14 @@ int run_program(int argc, const char* const* argv) {
     return report(fmt::format("{}; {}", error.what(), advice(program)), kWrongUsage);
   } catch (const UsageError& error) {
     return report(fmt::format("{}; {}", error.what(), advice(program)), kWrongUsage);
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  try {
+    return run_subcommand(argc, argv);
   } catch (const std::bad_alloc&) {
     return report(out_of_memory_text(), kFailed);
   } catch (const std::length_error&) {  // so large that no allocation was tried
