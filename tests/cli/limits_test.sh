@@ -23,8 +23,9 @@ sweep() {
     (ulimit -v "$kib" && exec timeout 60 "$program" "$@" >stdout 2>stderr </dev/null)
     status=$?
     [ $status = 0 ] && break
-    # Libraries that do not fit are the loader's to report.
-    if ! grep -q 'error while loading shared libraries' stderr; then
+    # Before the program begins, what does not fit is for the loader and the libraries to report.
+    (ulimit -v "$kib" && exec "$program" --version >/dev/null 2>&1)
+    if [ $? -le 1 ]; then
       [ $status = 1 ] || fail "status $status with $kib KiB: lockstep $*: $(head -c 400 stderr)"
       one_line "$kib KiB: lockstep $*"
       grep -q 'memory' stderr || fail "$kib KiB: lockstep $*: $(cat stderr)"
