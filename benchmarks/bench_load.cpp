@@ -121,7 +121,7 @@ void read_bytes(const std::vector<std::string>& paths) {
 
 // With the flags of core/scene.cpp.
 void build(const std::vector<Arrays>& meshes, const std::string& embree_isa) {
-  const RTCDevice device = rtcNewDevice(("isa=" + embree_isa).c_str());
+  const RTCDevice device = rtcNewDevice(embree_isa.empty() ? "" : ("isa=" + embree_isa).c_str());
   const RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);

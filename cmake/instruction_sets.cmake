@@ -3,8 +3,10 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   set(known_isas neon)
   # Characters have a sign, as on x86: text is read alike everywhere.
   target_compile_options(lockstep_options INTERFACE -fsigned-char)
-else()
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   set(known_isas sse4 avx2 avx512)
+else()
+  message(FATAL_ERROR "no kernels for processors of type '${CMAKE_SYSTEM_PROCESSOR}': x86_64 and aarch64 have some")
 endif()
 list(JOIN known_isas ", " known_isa_names)
 set(LOCKSTEP_ISAS ${known_isas} CACHE STRING

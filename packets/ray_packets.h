@@ -18,6 +18,9 @@ LOCKSTEP_INLINE void copy(T (&to)[P], const T* from) {
   std::memcpy(to, from, sizeof to);
 }
 
+// Callers name the number of lanes, an int: Embree 4's structures have an unsigned one, from which
+// it is not deduced.
+
 // What does not differ from ray to ray; Embree leaves it as it is.
 template <int P>
 void set_constants(RTCRayNt<P>& ray) {
@@ -41,13 +44,13 @@ LOCKSTEP_INLINE void set_rays(RTCRayNt<P>& ray, const Queue& queue, int i) {
 }
 template <int P>
 LOCKSTEP_INLINE void set_closest(RTCRayHitNt<P>& packet, const RayQueue& queue, int i) {
-  set_rays(packet.ray, queue, i);
+  set_rays<P>(packet.ray, queue, i);
   for (int lane = 0; lane < P; ++lane) packet.ray.tfar[lane] = ray_end;
   for (int lane = 0; lane < P; ++lane) packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
 }
 template <int P>
 LOCKSTEP_INLINE void set_shadow(RTCRayNt<P>& ray, const ShadowQueue& queue, int i) {
-  set_rays(ray, queue, i);
+  set_rays<P>(ray, queue, i);
   copy(ray.tfar, queue.distance + i);
 }
 template <int P>
@@ -104,7 +107,7 @@ template <int P>
 void closest_packets(RTCScene scene, bool coherent, const RayQueue& rays, int begin, int end,
                      HitArray& hits) {
   alignas(64) RTCRayHitNt<P> packet{};
-  set_constants(packet.ray);
+  set_constants<P>(packet.ray);
   ClosestQuery query = closest_query(coherent);
   const Valid<P> all(P);
   for (int i = begin; i < end; i += P) {
@@ -112,7 +115,7 @@ void closest_packets(RTCScene scene, bool coherent, const RayQueue& rays, int be
     if (end - i >= P) {
       intersect<P>(scene, query, all, &packet);
     } else {
-      repeat_first(packet.ray, end - i);
+      repeat_first<P>(packet.ray, end - i);
       intersect<P>(scene, query, Valid<P>(end - i), &packet);
     }
     keep_hits(packet, hits, i);
@@ -123,14 +126,14 @@ template <int P>
 void occluded_packets(RTCScene scene, bool coherent, ShadowQueue& rays, int begin, int end) {
   AnyQuery query = any_query(coherent);
   alignas(64) RTCRayNt<P> packet{};
-  set_constants(packet);
+  set_constants<P>(packet);
   const Valid<P> all(P);
   for (int i = begin; i < end; i += P) {
-    set_shadow(packet, rays, i);
+    set_shadow<P>(packet, rays, i);
     if (end - i >= P) {
       occlude<P>(scene, query, all, &packet);
     } else {
-      repeat_first(packet, end - i);
+      repeat_first<P>(packet, end - i);
       occlude<P>(scene, query, Valid<P>(end - i), &packet);
     }
     std::memcpy(rays.distance + i, packet.tfar, sizeof packet.tfar);
