@@ -25,7 +25,7 @@
 namespace lockstep {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using JsonMessage = nlohmann::json;
 
 constexpr double kLastRenderSeconds = 10.0;
 constexpr double kSharedFileSeconds = 20.0;  // until a file of another machine is seen
@@ -105,12 +105,12 @@ class CaseWorker {
   std::size_t index_ = 0;
 };
 
-Json unit_json(const Unit& unit, const CasePlan& plan) {
+JsonMessage unit_json(const Unit& unit, const CasePlan& plan) {
   return {{"plan", unit.plan}, {"scene", plan.scene}, {"depth", plan.depth}, {"label", plan.label},
           {"seed", unit.seed}, {"round", unit.round}, {"rungs", unit.rungs}};
 }
 
-std::pair<Unit, CasePlan> parse_unit(const Json& json) {
+std::pair<Unit, CasePlan> parse_unit(const JsonMessage& json) {
   return {{json.at("plan"), json.at("seed"), json.at("round"),
            json.at("rungs").get<std::vector<std::pair<int, int>>>()},
           {json.at("scene"), json.at("depth"), json.at("label"), 0.0}};
@@ -153,7 +153,7 @@ struct Lead {
                 }};
     phase.render_half = [&](const Scene& s, const SamplerSpec& sampler,
                             const RenderSettings& render_settings, int half, const Progress& p) {
-      const Json what = {{"scene", plan.scene}, {"depth", plan.depth}, {"half", half}};
+      const JsonMessage what = {{"scene", plan.scene}, {"depth", plan.depth}, {"half", half}};
       return render(s, sampler, render_settings, p,
                     share_tiles(desk, what, render_settings.threads));
     };
@@ -268,7 +268,7 @@ void help_compare(const CompareSettings& settings) {
   };
   CaseWorker worker(settings, scene, record, show);
   Skills skills;
-  skills.join = [&](const Json& render) {
+  skills.join = [&](const JsonMessage& render) {
     worker.close();
     const Scene& read = scene.get(render.at("scene"));
     const RenderSettings half =
@@ -278,7 +278,7 @@ void help_compare(const CompareSettings& settings) {
       return true;
     });
   };
-  skills.unit = [&](const Json& json) {
+  skills.unit = [&](const JsonMessage& json) {
     const auto [unit, plan] = parse_unit(json);
     worker.measure(unit, plan);
   };

@@ -18,7 +18,7 @@
 namespace lockstep {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using JsonMessage = nlohmann::json;
 
 struct PassHeader {
   std::uint64_t pass = 0;
@@ -62,7 +62,7 @@ std::pair<Header, std::vector<T>> unpack(const std::vector<char>& bytes) {
 // Rank 0's side of one render. What ranks know lasts from pass to pass.
 struct Sharing {
   Desk& desk;
-  const Json render;
+  const JsonMessage render;
   const int threads;
   std::uint64_t pass = 0;  // of all renders: none is taken for another's
   SharedPass shared = {};
@@ -104,7 +104,7 @@ struct Sharing {
 
 }  // namespace
 
-TileSharing share_tiles(Desk& desk, const Json& render, int threads) {
+TileSharing share_tiles(Desk& desk, const JsonMessage& render, int threads) {
   static std::atomic<std::uint64_t> passes = 0;
   auto sharing = std::make_shared<Sharing>(Sharing{desk, render, threads});
   TileSharing result;
@@ -157,7 +157,7 @@ struct Work {
   void measure(const Message& message) {
     renderer.reset();
     try {
-      skills.unit(Json::parse(text_of(message)));
+      skills.unit(JsonMessage::parse(text_of(message)));
     } catch (const Cancelled&) {
     }
   }
@@ -166,7 +166,7 @@ struct Work {
     switch (MessageKind(message.kind)) {
       case MessageKind::Render:
         renderer.reset();
-        renderer = skills.join(Json::parse(text_of(message)));
+        renderer = skills.join(JsonMessage::parse(text_of(message)));
         tell(MessageKind::Idle);
         break;
       case MessageKind::Pass: {
@@ -213,8 +213,9 @@ void say_alive() {
 void send_record(const std::string& line) { tell(MessageKind::Record, bytes_of(line)); }
 
 void help(const Skills& skills) {
-  const Json hello = {{"cpu", cpu_name()}, {"host", host_name()}};
-  tell(MessageKind::Hello, bytes_of(hello.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  const JsonMessage hello = {{"cpu", cpu_name()}, {"host", host_name()}};
+  tell(MessageKind::Hello,
+       bytes_of(hello.dump(-1, ' ', false, JsonMessage::error_handler_t::replace)));
   const bool is_ready = succeeds([&] {
     if (skills.prepare) skills.prepare();
   });
