@@ -364,7 +364,7 @@ TEST(Verdict, NamesTimesThatAreNotWellKnown) {
                             "owen at 16 spp."),
             std::string::npos)
       << sentence();
-  for (int i = 0; i < 40; ++i) comparison.scenes[0].repeats.push_back({1, 0, 16, 8.0, 8.0});
+  for (int i = 0; i < 40; ++i) comparison.scenes[0].repeats.push_back({1, 0, 16, 8.0, 8.0, {}});
   EXPECT_EQ(sentence().find("spread"), std::string::npos) << "forty further times agree";
 }
 
