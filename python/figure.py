@@ -33,7 +33,7 @@ HEADINGS = {  # the page's; other metrics go by their names
 }
 NOT_METRICS = set(
     "scene sampler seed spp cpu_seconds wall_seconds depth pilot_spp mean_weight lanes "
-    "lanes_active nonfinite width threads".split()
+    "lanes_active nonfinite width threads cpu".split()
 )
 HIGHER_IS_BETTER = {"ssim"}  # ends at 1: no logarithm makes sense of it
 

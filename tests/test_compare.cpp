@@ -35,7 +35,7 @@ TEST(ErrorsCsv, HeaderIsWhatScriptsRelyOn) {
   EXPECT_NE(errors_csv_header().find(",low_pass_rmse,"), std::string::npos)
       << "all metrics, not the table's";
   EXPECT_TRUE(errors_csv_header().ends_with(
-      ",depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads"));
+      ",depth,pilot_spp,mean_weight,lanes,lanes_active,nonfinite,width,threads,cpu"));
 }
 
 TEST(ErrorsCsv, FieldsWithCommasAreQuoted) {

@@ -21,6 +21,7 @@ render             --stats             file
 render             --weights           file
 render             --sampler           list sampler|option|number|expected x random:x rcs:c=-1 rcs:c=nan rcs:c=1e99 rcs:pilot=1.5 rcs:t= rcs: random,owen
 render             --display           list port|host|HOST x: :1 localhost:99999 localhost:-1 localhost:1.5
+render,compare     --rank-timeout      num 0.1 1000000000
 render,compare,profile --roulette-depth int 1 1000
 render,compare,profile --clamp         num 1e-06 1000000000
 render,compare,profile --resolution    list from.1.to.32768 0x5 5 5x -1x5 1.5x5 1000000x1000000 nanxinf 1e2x1e2 5x5x5 5X5 99999999999999999999x1
