@@ -202,7 +202,7 @@ class Comparisons(WithFolder):
             (
                 "errors.csv",
                 lambda text: text.replace(",1,4,", ",1,4", 1),
-                r"errors.csv:\d+: \\d+ fields",
+                r"errors.csv:\d+: \d+ fields",
             ),
             ("errors.csv", lambda text: "", "errors.csv: is empty"),
         ):
