@@ -2,7 +2,8 @@
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm64)$")
   set(known_isas neon)
   # Characters have a sign, as on x86: text is read alike everywhere.
-  target_compile_options(lockstep_options INTERFACE -fsigned-char)
+  target_compile_options(lockstep_options INTERFACE -fsigned-char
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)  # notes on what g++ 10 changed
 elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
   set(known_isas sse4 avx2 avx512)
 else()
