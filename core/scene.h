@@ -23,8 +23,8 @@ struct SceneMemory {
 class Scene {
  public:
   // Builds the acceleration structure with Embree restricted to `embree_isa` ("sse4.2", "avx2",
-  // "avx512"; empty: as it is), so that hits are those of that instruction set. Throws Error where the scene cannot
-  // be rendered (no geometry and no environment).
+  // "avx512"; empty: as it is), so that hits are those of that instruction set. Throws Error where
+  // the scene cannot be rendered (no geometry and no environment).
   Scene(SceneDescription description, const std::string& embree_isa);
   ~Scene();
   Scene(Scene&&) noexcept;

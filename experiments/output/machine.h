@@ -10,7 +10,7 @@
 namespace lockstep {
 
 std::string_view version();
-std::string embree_version();       // that the program is built with, and what it lacks
+std::string embree_version();  // that the program is built with, and what it lacks
 std::string cpu_name();
 int cpu_count();                    // logical processors this process may use
 std::string system_name();          // kernel and architecture
