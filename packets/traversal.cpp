@@ -15,7 +15,7 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 namespace {
 
 constexpr int trial_slice = 64;  // rays traced in one mode, then as many in another,
-constexpr int trial_slices = 8;  // at most
+constexpr int trial_slices = 4;  // at most
 
 RTCScene embree(const SceneData& scene) { return static_cast<RTCScene>(scene.embree_scene); }
 

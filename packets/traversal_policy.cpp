@@ -7,7 +7,7 @@ namespace lockstep {
 namespace {
 
 constexpr int smallest_queue = 64;  // rays; a trial on fewer says little
-constexpr std::uint32_t mode_spacing = 2;
+constexpr std::uint32_t mode_spacing = 1;
 
 // The order of trials: first what is often best.
 constexpr TraversalMode best_first[] = {
