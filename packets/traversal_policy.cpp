@@ -15,21 +15,23 @@ constexpr TraversalMode best_first[] = {
     {Packets::StreamNM, true}, {Packets::Sixteen, false},  {Packets::Stream1M, false},
     {Packets::Four, false},    {Packets::StreamNM, false}, {Packets::Single, false},
     {Packets::Four, true},     {Packets::Stream1M, true}};
-constexpr int flags_off = has_streams ? 6 : 4, alternatives = has_streams ? 11 : 7;
+constexpr bool is_tried(TraversalMode mode, bool with_coherent) {
+  return index(mode) < traversal_modes && (with_coherent || !mode.coherent);
+}
 
-template <int N>
-constexpr auto order_of(bool with_coherent) {
-  std::array<std::uint8_t, N> order{};
+template <bool with_coherent>
+constexpr auto order_of() {
+  constexpr auto tried = [](TraversalMode mode) { return is_tried(mode, with_coherent); };
+  std::array<std::uint8_t, std::ranges::count_if(best_first, tried)> order{};
   std::size_t n = 0;
   for (const TraversalMode mode : best_first) {
-    if (index(mode) >= traversal_modes || (mode.coherent && !with_coherent)) continue;
-    order[n++] = std::uint8_t(index(mode));
+    if (tried(mode)) order[n++] = std::uint8_t(index(mode));
   }
   return order;
 }
-constexpr auto all_modes = order_of<alternatives>(true);
+constexpr auto all_modes = order_of<true>();
 // Rays in all directions take twice as long with the flag: not even worth trials.
-constexpr auto incoherent_modes = order_of<flags_off>(false);
+constexpr auto incoherent_modes = order_of<false>();
 
 Packets packets_of(int width) {
   return width == 16  ? Packets::Sixteen
