@@ -185,9 +185,18 @@ void trace_closest(const SceneData& scene, TraversalMode mode, const RayQueue& r
   if (scene.features & bit(Feature::Spheres)) refine_distances(scene, rays, begin, end, hits);
 }
 
+// Debian's Embree 3.13.5 may never return from rtcOccluded16 with the coherent flag, nor from
+// coherent streams, which use it, where there are instances: compiled for AVX-512 it writes 16 bits
+// of a mask and reads 64, the rest being what the stack held. Packets of eight find the same.
+LOCKSTEP_INLINE Packets safe_packets(const SceneData& scene, TraversalMode mode) {
+  const bool in_danger = native_lanes == 16 && mode.coherent && mode.packets > Packets::Eight &&
+                         (scene.features & bit(Feature::Instances));
+  return in_danger ? Packets::Eight : mode.packets;
+}
+
 void trace_occluded(const SceneData& scene, TraversalMode mode, ShadowQueue& shadows, int begin,
                     int end) {
-  with_packets(mode.packets, [&](auto lanes, auto stream) {
+  with_packets(safe_packets(scene, mode), [&](auto lanes, auto stream) {
     if constexpr (stream) {
       occluded_stream<lanes>(embree(scene), mode.coherent, shadows, begin, end);
     } else {
