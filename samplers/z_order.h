@@ -26,11 +26,13 @@ LOCKSTEP_INLINE U permuted_digit(U digit, U hash) {
   return product ^ ((hash >> 17) & U(3u));
 }
 
-// The upper bits of a permuted index that some indices have in common.
+// What the places of a tile's samples have in common, where that is anything: the upper bits of
+// the index, and the keys.
 struct CommonDigits {
   std::uint32_t above = 0;   // the index's own bits, shifted down
   std::uint32_t result = 0;  // permuted, in place
-  int bits = 0;
+  int bits = 0;              // 0: nothing
+  Hash4<std::uint32_t> keys{};
 };
 
 // A random order of the four children of every node of the curve's quadtree, and of the samples
@@ -63,7 +65,7 @@ struct ZOrder {
 // Sample k of 2^sample_bits; further ones have other keys.
 template <class U>
 LOCKSTEP_INLINE ZOrder<U> z_order(const SamplerState& s, U pixel, U sample, int sample_bits,
-                                  int pair, std::uint32_t seed) {
+                                  int pair, std::uint32_t seed, const CommonDigits& common = {}) {
   const PixelPosition<U> p = position_of(pixel, s.width);
   // What the index has no room for makes blocks of pixels that know nothing of each other.
   const int pixel_bits = std::min(s.pixel_bits, (32 - sample_bits) / 2);
@@ -71,8 +73,13 @@ LOCKSTEP_INLINE ZOrder<U> z_order(const SamplerState& s, U pixel, U sample, int 
   const U mask((1u << pixel_bits) - 1u);
   const U code = morton_code(PixelPosition<U>{p.x & mask, p.y & mask});
   const U index = (code << sample_bits) | (sample & U((1u << sample_bits) - 1u));
+  const int bits = 2 * pixel_bits + sample_bits;
+  if (common.bits > 0) {
+    const Hash4<std::uint32_t>& k = common.keys;
+    return {index, {U(k.x), U(k.y), U(k.z), U(k.w)}, bits};
+  }
   return {index, pcg4d(U(std::uint32_t(pair)), block, sample >> sample_bits, U(seed ^ 0x20b01u)),
-          2 * pixel_bits + sample_bits};
+          bits};
 }
 
 // What all pixels of the tile of share_tile x share_tile around `pixel` have in common, for samples
@@ -82,7 +89,8 @@ inline CommonDigits digits_of_tile(const SamplerState& s, std::uint32_t pixel, s
   const ZOrder<std::uint32_t> z = z_order(s, pixel, sample, sample_bits, pair, seed);
   const int own = 2 * std::countr_zero(unsigned(share_tile)) + sample_bits;
   if (z.bits <= own) return {};
-  return {z.index >> own, permuted_digits(z.index, z.bits, z.keys.x, {}, own), z.bits - own};
+  return {z.index >> own, permuted_digits(z.index, z.bits, z.keys.x, {}, own), z.bits - own,
+          z.keys};
 }
 
 // The point of the pixel's sample.
@@ -90,7 +98,7 @@ template <class U>
 LOCKSTEP_INLINE Fractions<U> z_ordered_point(const SamplerState& s, U pixel, U sample,
                                              int sample_bits, int pair, std::uint32_t seed,
                                              const CommonDigits& common = {}) {
-  const ZOrder<U> z = z_order(s, pixel, sample, sample_bits, pair, seed);
+  const ZOrder<U> z = z_order(s, pixel, sample, sample_bits, pair, seed, common);
   const U place = permuted_digits(z.index, z.bits, z.keys.x, common);
   return scrambled_sobol(place, folded(z.keys.y), folded(z.keys.z));
 }
