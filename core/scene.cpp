@@ -84,11 +84,9 @@ void attach_shape(RTCDevice device, RTCScene scene, const FlatScene& flat, unsig
   rtcReleaseGeometry(geometry);
 }
 
-// Robust: no ray slips between triangles, and every traversal mode finds the same distances to the
-// last bit.
-SceneHandle new_scene(RTCDevice device) {
+SceneHandle new_scene(RTCDevice device, bool robust) {
   SceneHandle scene(rtcNewScene(device));
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(scene.get(), robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
   return scene;
 }
@@ -142,7 +140,7 @@ struct Scene::Storage {
   std::uint64_t fingerprint_of_all() const {
     std::uint64_t all = lockstep::fingerprint(flat) ^ textures.fingerprint() * 3u;
     if (environment_map) all ^= environment_map->fingerprint() * 5u;
-    return all;
+    return description.robust_intersection ? all : all * 7u;
   }
 
   std::size_t triangle_count() const { return (flat.triangles.size() - 4) / 3; }  // padding aside
@@ -160,7 +158,7 @@ struct Scene::Storage {
     holes.resize(all);
     attach_shapes(scene.get(), 0, flat.objects.empty() ? all : flat.objects[0].first_geometry);
     for (const FlatObject& object : flat.objects) {
-      objects.push_back(new_scene(device.get()));
+      objects.push_back(new_scene(device.get(), description.robust_intersection));
       attach_shapes(objects.back().get(), object.first_geometry, object.geometry_count);
       rtcCommitScene(objects.back().get());
     }
@@ -202,7 +200,7 @@ Scene::Scene(SceneDescription description, const std::string& embree_isa)
   s.device.reset(rtcNewDevice(device_settings(embree_isa).c_str()));
   if (!s.device) throw Error(why_no_device(embree_isa));
   rtcSetDeviceMemoryMonitorFunction(s.device.get(), EmbreeMemory::count, &s.embree_memory);
-  s.scene = new_scene(s.device.get());
+  s.scene = new_scene(s.device.get(), s.description.robust_intersection);
   tbb::parallel_invoke([&] { s.find_coincident(); },
                        [&] { s.fingerprint = s.fingerprint_of_all(); });
   s.build();

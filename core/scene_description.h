@@ -78,6 +78,7 @@ struct SceneDescription {
   FilmDescription film;
   RenderDefaults defaults;
   bool compensate_microfacets = false;  // light lost between facets is put back
+  bool robust_intersection = true;      // else rays may slip through where triangles meet
   std::vector<std::string> warnings;    // one line each, "file:line: what was not understood"
 };
 

@@ -2,6 +2,7 @@
 #include "experiments/scenes/scene_overrides.h"
 
 #include "core/read_scene.h"
+#include "core/scene.h"
 #include "tests/t_files.h"
 
 #include <glm/geometric.hpp>
@@ -292,6 +293,17 @@ TEST_F(SceneOverridesTest, Environments) {
   EXPECT_FALSE(scene);
   expect_one_line_with(usage_error_of([&] { apply_override(parse_environment("", 2.0f), scene); }),
                        "the scene has no environment");
+}
+
+TEST_F(SceneOverridesTest, FastIntersectionIsNamedAndAnotherScene) {
+  SceneOverrides overrides;
+  EXPECT_TRUE(override_metadata(overrides).empty());
+  EXPECT_TRUE(read_scene("cornell", overrides).robust_intersection);
+  overrides.robust_intersection = false;
+  EXPECT_EQ(override_metadata(overrides).at("intersection"), "fast");
+  const SceneDescription fast = read_scene("cornell", overrides);
+  EXPECT_FALSE(fast.robust_intersection);
+  EXPECT_NE(Scene(fast, "").fingerprint(), Scene(read_scene("cornell"), "").fingerprint());
 }
 
 TEST_F(SceneOverridesTest, TheEnvironmentsTopIsTurned) {

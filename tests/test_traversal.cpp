@@ -89,6 +89,13 @@ TEST(TraversalModes, GiveOneImageOfSheetsOnEachOther) {
   expect_same_in_every_mode(sheets_on_each_other(), 9);
 }
 
+TEST(TraversalModes, GiveOneImageWithFastIntersection) {
+  for (SceneDescription description : {small("cornell"), small("reef"), sheets_on_each_other()}) {
+    description.robust_intersection = false;
+    expect_same_in_every_mode(description, 3);
+  }
+}
+
 // An image of scene data that no Scene holds.
 Image image_of(const SceneData& data, Isa isa, TraversalMode mode) {
   Workers workers(TraversalPolicy(mode, 0), LayoutPolicy(LaneLayout{}));

@@ -87,6 +87,10 @@ void add_scene_options(CLI::App& command, RendererOptions& options) {
                 "Put back the light that rough metals, glass, coats and principled materials\n"
                 "lose between their microfacets (Turquin 2019)")
       ->group("Scene");
+  add("--intersection", options.intersection, "HOW",
+      "robust: no ray slips between triangles that share an edge; fast:\n"
+      "Embree's default, some may (default: robust)")
+      ->check(one_of({"robust", "fast"}));
 }
 
 }  // namespace
@@ -214,6 +218,7 @@ SceneOverrides scene_overrides(const RendererOptions& options) {
   overrides.environment =
       parse_environment(options.environment, options.environment_scale, options.environment_up);
   overrides.compensate = options.compensate;
+  overrides.robust_intersection = options.intersection == "robust";
   return overrides;
 }
 

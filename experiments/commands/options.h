@@ -31,6 +31,7 @@ struct RendererOptions {
   std::string camera, environment, environment_up;
   std::optional<float> environment_scale;
   bool compensate = false;
+  std::string intersection = "robust";
 };
 
 // Accepts numbers from `low` to `high`; help shows the option's own words alone.

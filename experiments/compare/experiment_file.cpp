@@ -153,7 +153,7 @@ const std::vector<ExperimentKey>& experiment_keys() {
       {"threads", Kind::Number},       {"width", Kind::TextOrNumber},
       {"lanes", Kind::Text},           {"traversal", Kind::Text},
       {"general", Kind::Switch},       {"isa", Kind::Text},
-      {"clamp", Kind::Number},
+      {"clamp", Kind::Number},         {"intersection", Kind::Text},
   };
   return keys;
 }

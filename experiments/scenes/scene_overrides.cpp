@@ -125,6 +125,7 @@ Metadata override_metadata(const SceneOverrides& overrides) {
   const std::optional<float> scale = overrides.environment.scale;
   add("environment_scale", scale ? fmt::format("{}", *scale) : "");
   add("compensate", overrides.compensate ? "yes" : "");
+  add("intersection", overrides.robust_intersection ? "" : "fast");
   return metadata;
 }
 
@@ -133,6 +134,7 @@ SceneDescription read_scene(const std::string& name, const SceneOverrides& overr
   apply_override(overrides.camera, scene.camera);
   apply_override(overrides.environment, scene.environment);
   scene.compensate_microfacets = overrides.compensate;
+  scene.robust_intersection = overrides.robust_intersection;
   if (overrides.camera.origin) drop_warnings(scene, "; one that frames all is used");
   if (overrides.environment.kind != Kind::Keep) {
     drop_warnings(scene, "; an environment of radiance 1 is used");

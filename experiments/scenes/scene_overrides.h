@@ -34,11 +34,12 @@ void apply_override(const EnvironmentOverride& change, std::optional<Environment
 struct SceneOverrides {
   CameraOverride camera;
   EnvironmentOverride environment;
-  bool compensate = false;  // SceneDescription::compensate_microfacets
+  bool compensate = false;          // SceneDescription::compensate_microfacets
+  bool robust_intersection = true;  // SceneDescription::robust_intersection
 };
 
-// For image headers and statistics: "camera", "environment", "environment_up", "environment_scale"
-// and "compensate" as typed, each only where it changes something.
+// For image headers and statistics: "camera", "environment", "environment_up", "environment_scale",
+// "compensate" and "intersection" as typed, each only where it changes something.
 Metadata override_metadata(const SceneOverrides& overrides);
 
 // core/read_scene.h's read_scene with the changes made. Throws what it and apply_override() throw.
