@@ -85,14 +85,21 @@ LOCKSTEP_INLINE LightSample<V> sample_flat_light(const LightRow<V>& light, MaskO
   const auto [place, solid_angle] = point_on_light(light, quad, triangle, disk, p, u);
   const Vec3<V> to = light.corner + fma(place.x, light.edge1, light.edge2 * place.y) - p;
   const V distance2 = dot(to, to);
-  const V distance = sqrt(distance2);
-  const Vec3<V> wi = to * (V(1.0f) / distance);
+  const V inverse_distance = rsqrt(distance2);
+  const Vec3<V> wi = to * inverse_distance;
   const V cos_light = -dot(light.normal, wi);
-  const V density = select(solid_angle > V(0.0f), V(1.0f) / solid_angle,
-                           solid_angle_pdf(distance, abs(cos_light), light.area));
+  // By solid angle, or by area: see solid_angle_pdf.
+  const MaskOf<V> by_angle = solid_angle > V(0.0f);
+  const V density = select(by_angle, V(1.0f), distance2) /
+                    select(by_angle, solid_angle, abs(cos_light) * light.area);
   const V pdf = light.probability * density;
   const MaskOf<V> lit = emits(light.side, cos_light) & (distance2 > V(0.0f)) & is_finite(pdf);
-  return {wi, distance, light.radiance, select(lit, pdf, V(0.0f)), MaskOf<V>(false), place};
+  return {wi,
+          distance2 * inverse_distance,
+          light.radiance,
+          select(lit, pdf, V(0.0f)),
+          MaskOf<V>(false),
+          place};
 }
 
 // The solid angle in which sample_flat_light is uniform as p sees the light; 0: in area.

@@ -38,7 +38,7 @@ LOCKSTEP_INLINE Frame<V> frame_along(const Vec3<V>& n, const Vec3<V>& t) {
   const V length2 = dot(in_plane, in_plane);
   const MaskOf<V> usable = length2 > V(1e-10f);
   const Frame<V> any = frame_around(n);
-  const Vec3<V> x = in_plane * (V(1.0f) / sqrt(select(usable, length2, V(1.0f))));
+  const Vec3<V> x = in_plane * rsqrt(select(usable, length2, V(1.0f)));
   return {select<V>(usable, x, any.x), select<V>(usable, cross(n, x), any.y), n};
 }
 

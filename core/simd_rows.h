@@ -84,6 +84,25 @@ struct Square {
   }
 };
 
+// Stores lanes that are to be read one by one. Of 16, four at a time: scalar loads wait long for
+// what a 64-byte store left, and moving lanes out of a register, which g++ 12 makes of a store it
+// sees through, keeps the port busy that transposes need.
+template <class T, int W>
+LOCKSTEP_INLINE void spill(T (&to)[W], Lanes<T, W> v) {
+#if defined(__AVX512F__)
+  if constexpr (W == 16) {
+    auto* part = reinterpret_cast<__m128i*>(to);
+    _mm_storeu_si128(part, _mm512_castsi512_si128((__m512i)v.s));
+    _mm_storeu_si128(part + 1, _mm512_extracti32x4_epi32((__m512i)v.s, 1));
+    _mm_storeu_si128(part + 2, _mm512_extracti32x4_epi32((__m512i)v.s, 2));
+    _mm_storeu_si128(part + 3, _mm512_extracti32x4_epi32((__m512i)v.s, 3));
+    asm("" : "+m"(to));
+    return;
+  }
+#endif
+  store(to, v);
+}
+
 // The rows of lanes j, j + 4, j + 8, ... side by side.
 template <int W>
 LOCKSTEP_INLINE typename NativeVector<float, W>::type load_rows(const float* base,
@@ -187,7 +206,7 @@ LOCKSTEP_INLINE void add_rows(float* rows, Lanes<std::int32_t, W> index,
   detail::Row values[W];
   std::int32_t at[W];
   detail::store_rows<W>(values, add);
-  store(at, index);
+  detail::spill(at, index);
   for (std::uint32_t left = bits(m); left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left);
     float* row = rows + 4 * at[lane];

@@ -40,23 +40,23 @@ inline constexpr float max_triangle_angle = 6.2f;
 template <class V>
 LOCKSTEP_INLINE Vec3<V> across(const Vec3<V>& v, const Vec3<V>& axis) {
   const Vec3<V> x = v - axis * dot(v, axis);
-  return x * (V(1.0f) / sqrt(max(dot(x, x), V(1e-30f))));
+  return x * rsqrt(max(dot(x, x), V(1e-30f)));
 }
 
 // Point of the triangle as shares of its edges; pdf 1 / solid angle. As Arvo has it: the part
 // a, b, c' with the share u.x of the solid angle, then a point between b and c'.
 template <class V>
 LOCKSTEP_INLINE Vec2<V> sample_spherical_triangle(const SphericalTriangle<V>& s, Vec2<V> u) {
-  const auto unit = [](const Vec3<V>& v) LOCKSTEP_LAMBDA { return v * (V(1.0f) / length(v)); };
-  const Vec3<V> a = unit(s.to_corner), b = unit(s.to_corner + s.edge1);
+  const V inverse_distance = rsqrt(dot(s.to_corner, s.to_corner));
+  const Vec3<V> a = s.to_corner * inverse_distance, b = normalize(s.to_corner + s.edge1);
   const auto one_minus_cos = [](const Vec3<V>& v, const Vec3<V>& w)
                                  LOCKSTEP_LAMBDA { return V(0.5f) * dot(v - w, v - w); };
 
   // The angle alpha at a between the planes of the edges.
   const Vec3<V> n1 = cross(a, s.edge1), n2 = cross(a, s.edge2);
-  const V scale = V(1.0f) / sqrt(dot(n1, n1) * dot(n2, n2));
+  const V scale = rsqrt(dot(n1, n1) * dot(n2, n2));
   const V cos_alpha = dot(n1, n2) * scale;
-  const V sin_alpha = abs(s.determinant) / length(s.to_corner) * scale;
+  const V sin_alpha = abs(s.determinant) * inverse_distance * scale;
 
   // 1 - cos of the angle from a to c'. With phi, the area less alpha: u = cos phi - cos alpha and
   // v = sin phi + sin alpha cos(a, b).

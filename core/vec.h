@@ -48,7 +48,7 @@ LOCKSTEP_INLINE V length(const Vec3<V>& a) {
 
 template <class V>
 LOCKSTEP_INLINE Vec3<V> normalize(const Vec3<V>& a) {
-  return a * (V(1.0f) / length(a));
+  return a * rsqrt(dot(a, a));
 }
 
 // a + s * b
@@ -79,11 +79,20 @@ LOCKSTEP_INLINE auto gather_vec3(const T* base, I index, int stride) {
   return Vec3<std::remove_const_t<decltype(row.x)>>(row.x, row.y, row.z);
 }
 
+// A power of two, by which x > 0 comes to lie in [1/2, 4).
+template <class V>
+LOCKSTEP_INLINE V power_of_two_scale(V x) {
+  using I = IntOf<V>;
+  const I exponent = as_int(as_uint(x) & UIntOf<V>(0x7f800000u));
+  const I scale = I(0x7e800000) - exponent, smallest(0x00800000);
+  return as_float(as_uint(select(scale < smallest, smallest, scale)));
+}
+
 // Normalises vectors whose squared length would leave float's range.
 template <class V>
 LOCKSTEP_INLINE Vec3<V> normalize_any(const Vec3<V>& a) {
   const V largest = max(max_component(abs(a)), V(std::numeric_limits<float>::min()));
-  return normalize(a * (V(1.0f) / largest));
+  return normalize(a * power_of_two_scale(largest));
 }
 
 }  // namespace LOCKSTEP_ISA_NAMESPACE

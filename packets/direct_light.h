@@ -108,9 +108,12 @@ LOCKSTEP_INLINE void sample_direct_light(const ShadeContext& c, const Surface<V>
   MaskOf<V> lit = active & (s.pdf > V(0.0f)) & is_possible<Bsdf>(surface, wi, s.wi);
   if (none(lit)) return;
   const BsdfValue<V> f = eval(bsdf, turned<Bsdf>(surface, surface.wo), turned<Bsdf>(surface, wi));
-  V weight = alone ? V(1.0f) : power_heuristic(s.pdf, f.pdf);
-  if (needs_any<F>(scene, delta_light_features)) weight = select(s.delta, V(1.0f), weight);
-  Vec3<V> radiance = throughput * f.f_cos * s.radiance * (weight / s.pdf);
+  V divisor = s.pdf;
+  if (!alone) {
+    divisor = s.pdf * inverse_power_heuristic(s.pdf, f.pdf);
+    if (needs_any<F>(scene, delta_light_features)) divisor = select(s.delta, s.pdf, divisor);
+  }
+  Vec3<V> radiance = throughput * f.f_cos * s.radiance * (V(1.0f) / divisor);
   if (needs<F>(scene, Feature::TexturedLights)) {
     radiance = radiance * sampled_glow<F>(scene, light.index, s.place, lit);
   }

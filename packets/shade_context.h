@@ -7,11 +7,16 @@
 namespace lockstep {
 inline namespace LOCKSTEP_ISA_NAMESPACE {
 
-// Weight of a technique with density `a` against one with density `b`, power heuristic, beta = 2.
+// 1 / the weight of a technique with density `a` against one with density `b`, power heuristic,
+// beta = 2.
+template <class V>
+LOCKSTEP_INLINE V inverse_power_heuristic(V a, V b) {
+  const V ratio = b / a;
+  return fma(ratio, ratio, V(1.0f));
+}
 template <class V>
 LOCKSTEP_INLINE V power_heuristic(V a, V b) {
-  const V ratio = b / a;
-  return V(1.0f) / fma(ratio, ratio, V(1.0f));
+  return V(1.0f) / inverse_power_heuristic(a, b);
 }
 
 struct ShadeContext {

@@ -41,7 +41,7 @@ LOCKSTEP_INLINE Vec3<V> bumped_normal(const TextureTable& textures, const Textur
   const V length2 = dot(tilted, tilted);
   const MaskOf<V> usable = (length2 > V(0.0f)) & is_finite(length2);
   const V sign = copysign(V(1.0f), dot(flat, normal));
-  const V scale = sign / sqrt(select(usable, length2, V(1.0f)));
+  const V scale = sign * rsqrt(select(usable, length2, V(1.0f)));
   return select<V>(usable, tilted * scale, normal);
 }
 

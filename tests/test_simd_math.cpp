@@ -81,6 +81,36 @@ TEST(SimdMath, SincosHasTheSameBitsAtEveryWidth) {
   });
 }
 
+TEST(SimdMath, RsqrtKeepsItsBound) {
+  const auto error_of = [](float x) { return std::abs(rsqrt(x) * std::sqrt(double(x)) - 1.0); };
+  double worst = 0.0;
+  for (std::uint32_t i = 0; i < 1 << 20; ++i) {
+    worst = std::max(worst, error_of(1.0f + 3.0f * uniform3(i, 3).x));
+  }
+  for (int n = -126; n <= 127; ++n) worst = std::max(worst, error_of(std::ldexp(1.3f, n)));
+  EXPECT_LT(worst, 0x1p-22);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(rsqrt(0.0f), infinity);
+  EXPECT_EQ(rsqrt(infinity), 0.0f);
+  EXPECT_TRUE(std::isnan(rsqrt(-1.0f)));
+  EXPECT_TRUE(std::isnan(rsqrt(std::numeric_limits<float>::quiet_NaN())));
+}
+
+TEST(SimdMath, RsqrtHasTheSameBitsAtEveryWidth) {
+  for_each_width([](auto width) {
+    constexpr int W = width();
+    for (std::uint32_t i = 0; i < 1 << 14; i += W) {
+      float x[W];
+      for (int k = 0; k < W; ++k) {
+        x[k] = std::ldexp(uniform3(i + std::uint32_t(k), 4).x, int(i % 250) - 125);
+      }
+      x[0] = i % 64 ? x[0] : 0.0f;
+      const auto wide = rsqrt(load<Float<W>>(x));
+      for (int k = 0; k < W; ++k) ASSERT_TRUE(same_value(wide[k], rsqrt(x[k])));
+    }
+  });
+}
+
 TEST(Hash, HasTheSameBitsAtEveryWidth) {
   for_each_width([](auto width) {
     constexpr int W = width();
@@ -161,6 +191,18 @@ double frame_error(glm::vec3 n) {
       std::max({std::abs(glm::dot(x, y)), std::abs(glm::dot(y, z)), std::abs(glm::dot(z, x))});
   return std::max(
       {lengths, angles, glm::length(glm::cross(x, y) - z), glm::length(z - glm::dvec3(n))});
+}
+
+TEST(Vec, NormalizeAnyTakesAnyLength) {
+  for (int n = -126; n <= 127; ++n) {
+    const float x = std::ldexp(1.5f, n);
+    EXPECT_GE(x * power_of_two_scale(x), 0.5f);
+    EXPECT_LT(x * power_of_two_scale(x), 4.0f);
+    const Vec3<float> unit = normalize_any(Vec3<float>(x, -x, 0.5f * x));
+    EXPECT_NEAR(unit.x, 2.0f / 3.0f, 1e-6f) << n;
+    EXPECT_NEAR(unit.y, -2.0f / 3.0f, 1e-6f) << n;
+    EXPECT_NEAR(unit.z, 1.0f / 3.0f, 1e-6f) << n;
+  }
 }
 
 TEST(Frame, IsOrthonormalAroundAnyNormal) {

@@ -88,7 +88,7 @@ LOCKSTEP_INLINE Vec3<V> refract(const Vec3<V>& wo, const Vec3<V>& m, V cos_o, V 
 template <class V>
 LOCKSTEP_INLINE Vec3<V> half_vector(const Vec3<V>& wo, const Vec3<V>& wi, V eta) {
   const Vec3<V> h = fma(eta, wi, wo);
-  return h * copysign(V(1.0f) / length(h), h.z);
+  return h * copysign(rsqrt(dot(h, h)), h.z);
 }
 
 // (wo . m) dm / dwi: facets, as seen from wo, per solid angle of wi. Reflection: Walter et al.
