@@ -1,8 +1,8 @@
 #include "experiments/metrics/flip_side.h"
 
+#include "core/vector_clones.h"
 #include "experiments/metrics/separable_filter.h"
 #include "experiments/output/fast_power.h"
-#include "experiments/output/vector_clones.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>

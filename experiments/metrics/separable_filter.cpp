@@ -1,6 +1,6 @@
 #include "experiments/metrics/separable_filter.h"
 
-#include "experiments/output/vector_clones.h"
+#include "core/vector_clones.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,8 +1,8 @@
 #include "experiments/output/display_image.h"
 
 #include "core/srgb.h"
+#include "core/vector_clones.h"
 #include "experiments/output/fast_power.h"
-#include "experiments/output/vector_clones.h"
 
 #include <tbb/parallel_for.h>
 
