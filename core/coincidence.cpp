@@ -25,27 +25,17 @@ Buckets bucketed_planes(const UnitMesh& mesh) {
   return Buckets(shares);
 }
 
-// Searches the groups of equal keys among sorted `entries`.
-void search_groups(std::span<const Entry> entries, OverlapSearch& search) {
-  for (std::size_t first = 0; first < entries.size();) {
-    const std::uint32_t key = key_of(entries[first]);
-    std::size_t end = first + 1;
-    while (end < entries.size() && key_of(entries[end]) == key) ++end;
-    if (end - first > 1) search.search(entries.subspan(first, end - first), axis_of_key(key));
-    first = end;
-  }
-}
-
 // Empty where no triangle overlaps another one.
 std::vector<std::uint8_t> overlap_flags(const UnitMesh& mesh) {
   const Buckets buckets = bucketed_planes(mesh);
   std::vector<std::uint8_t> flags(mesh.count);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, buckets.size()), [&](const auto& range) {
     OverlapSearch search(mesh, flags);
-    std::vector<Entry> sorted;
+    SharedKeys keys;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      sort_shared_keys(buckets[i], buckets.key_bits(), sorted);
-      search_groups(sorted, search);
+      keys.for_each_group(buckets[i], buckets.key_bits(), [&](std::span<const Entry> group) {
+        search.search(group, axis_of_key(key_of(group[0])));
+      });
     }
   });
   if (std::find(flags.begin(), flags.end(), 1) == flags.end()) flags.clear();

@@ -16,6 +16,9 @@ constexpr std::size_t kBucketEntries = 2048;
 // More buckets than this would be written to through too many pages at once.
 constexpr int kMostBucketBits = 11;
 
+// Of keys, by which entries are linked: chains are mostly of one entry or of one key.
+constexpr int kMostLinkBits = 16;
+
 // Stable, 11 bits of the key a pass.
 void radix_sort(std::span<Entry> entries, std::vector<Entry>& scratch) {
   scratch.resize(entries.size());
@@ -70,28 +73,25 @@ Buckets::Buckets(std::vector<std::vector<Entry>>& shares) {
   });
 }
 
-// A pass over the next bits of the keys leaves runs of a few entries to sort.
-void sort_shared_keys(std::span<const Entry> bucket, int common_bits, std::vector<Entry>& sorted) {
-  constexpr int bits = 12;
-  std::array<std::uint32_t, (1 << bits) + 1> ends{};
-  const auto run_of = [&](Entry e) { return e << common_bits >> (64 - bits); };
-  for (const Entry e : bucket) ++ends[run_of(e)];
-  // Where each run of several entries begins; entries alone in theirs are left out.
-  constexpr std::uint32_t alone = UINT32_MAX;
-  std::uint32_t sum = 0;
-  for (std::uint32_t& n : ends) n = n == 1 ? alone : std::exchange(sum, sum + n);
-  sorted.resize(sum);
-  for (const Entry e : bucket) {
-    std::uint32_t& place = ends[run_of(e)];
-    if (place != alone) sorted[place++] = e;
+void SharedKeys::link(std::span<const Entry> bucket, int common_bits) {
+  const int width = static_cast<int>(std::bit_width(bucket.size())) + 1;
+  shift_ = {common_bits, 64 - std::min(width, kMostLinkBits)};
+  heads_.assign(std::size_t{1} << (64 - shift_.down), 0);
+  next_.resize(bucket.size());
+  for (std::size_t i = bucket.size(); i-- > 0;) {
+    next_[i] = std::exchange(heads_[chain_of(bucket[i])], static_cast<std::uint32_t>(i + 1));
   }
-  // Now each stands where its run ends.
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : ends) {
-    if (end == alone) continue;
-    std::sort(sorted.begin() + begin, sorted.begin() + end);
-    begin = end;
+}
+
+void SharedKeys::collect(std::span<const Entry> bucket, std::uint32_t head) {
+  chain_.clear();
+  const std::uint32_t key = key_of(bucket[head - 1]);
+  bool one_key = true;
+  for (std::uint32_t i = head; i != 0; i = next_[i - 1]) {
+    chain_.push_back(bucket[i - 1]);
+    one_key &= key_of(bucket[i - 1]) == key;
   }
+  if (!one_key) std::sort(chain_.begin(), chain_.end());
 }
 
 }  // namespace lockstep::coincidence

@@ -5,9 +5,6 @@
 
 namespace lockstep::coincidence {
 
-inline double least(double a, double b, double c) { return std::min(std::min(a, b), c); }
-inline double greatest(double a, double b, double c) { return std::max(std::max(a, b), c); }
-
 inline Point difference(const Point& a, const Point& b) {
   return {a.u - b.u, a.v - b.v, a.w - b.w};
 }

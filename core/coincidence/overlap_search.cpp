@@ -1,8 +1,10 @@
 #include "core/coincidence/overlap_search.h"
 
 #include "core/coincidence/facet.h"
+#include "core/vector_clones.h"
 
 #include <atomic>
+#include <bit>
 
 namespace lockstep::coincidence {
 
@@ -21,8 +23,8 @@ struct Strips {
 
 namespace {
 
-// Groups up to this size are searched pair by pair.
-constexpr std::size_t kSmallGroup = 24;
+// So many boxes at a time are compared with so many others at most.
+constexpr std::size_t kRow = 16, kColumn = 32;
 
 // Whether the vertices of `b` lie in the plane of `a`, within the errors of both.
 bool holds_vertices(const Facet& a, const Facet& b) {
@@ -66,22 +68,36 @@ Box box_along(const UnitMesh& mesh, std::uint32_t triangle, std::size_t axis) {
           least(p[0].v, p[1].v, p[2].v), greatest(p[0].v, p[1].v, p[2].v), triangle};
 }
 
-// A triangle's extent along two axes, as the caller's coordinates state it: boxes apart here are so
-// in unit coordinates, too.
-struct RawBox {
-  float u_low, u_high, v_low, v_high;
-};
-
-RawBox raw_box_along(const UnitMesh& mesh, std::uint32_t triangle, std::size_t axis) {
+// Adds a triangle's extent along two axes.
+void set_box(const UnitMesh& mesh, std::uint32_t triangle, std::size_t axis, std::size_t place,
+             SmallBoxes& boxes) {
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   const float *a = mesh.vertex(triangle, 0), *b = mesh.vertex(triangle, 1),
               *c = mesh.vertex(triangle, 2);
-  return {std::min(std::min(a[u], b[u]), c[u]), std::max(std::max(a[u], b[u]), c[u]),
-          std::min(std::min(a[v], b[v]), c[v]), std::max(std::max(a[v], b[v]), c[v])};
+  boxes.u_low[place] = least(a[u], b[u], c[u]);
+  boxes.u_high[place] = greatest(a[u], b[u], c[u]);
+  boxes.v_low[place] = least(a[v], b[v], c[v]);
+  boxes.v_high[place] = greatest(a[v], b[v], c[v]);
 }
 
-bool overlap(const RawBox& a, const RawBox& b) {
-  return a.u_low < b.u_high && b.u_low < a.u_high && a.v_low < b.v_high && b.v_low < a.v_high;
+// Which of [begin, end), at most kColumn, each of the boxes [first, first + kRow) overlaps: bits
+// from the lowest.
+LOCKSTEP_VECTOR_CLONES
+void find_overlaps(const SmallBoxes& boxes, std::size_t first, std::size_t begin, std::size_t end,
+                   std::uint32_t* __restrict found) {
+  const float *u_low = boxes.u_low + first, *u_high = boxes.u_high + first,
+              *v_low = boxes.v_low + first, *v_high = boxes.v_high + first;
+  for (std::size_t i = 0; i < kRow; ++i) found[i] = 0;
+  for (std::size_t j = begin; j < end; ++j) {
+    const float low_u = boxes.u_low[j], high_u = boxes.u_high[j], low_v = boxes.v_low[j],
+                high_v = boxes.v_high[j];
+    const std::uint32_t bit = 1u << (j - begin);
+    for (std::size_t i = 0; i < kRow; ++i) {
+      const bool overlaps =
+          (u_low[i] < high_u) & (low_u < u_high[i]) & (v_low[i] < high_v) & (low_v < v_high[i]);
+      found[i] |= overlaps ? bit : 0u;
+    }
+  }
 }
 
 Strips strips_over(std::span<const Box> boxes) {
@@ -110,7 +126,7 @@ std::uint32_t sweep_key(int strip, std::uint32_t u_cell) {
 
 void OverlapSearch::search(std::span<const Entry> group, std::size_t axis) {
   axis_ = axis;
-  if (group.size() <= kSmallGroup) {
+  if (group.size() <= SmallBoxes::most) {
     search_pairs(group);
     return;
   }
@@ -120,12 +136,22 @@ void OverlapSearch::search(std::span<const Entry> group, std::size_t axis) {
 }
 
 void OverlapSearch::search_pairs(std::span<const Entry> group) {
-  std::array<RawBox, kSmallGroup> boxes;
   for (std::size_t i = 0; i < group.size(); ++i) {
-    const std::uint32_t triangle = index_of(group[i]);
-    boxes[i] = raw_box_along(mesh_, triangle, axis_);
-    for (std::size_t j = 0; j < i; ++j) {
-      if (overlap(boxes[i], boxes[j])) test(triangle, index_of(group[j]));
+    set_box(mesh_, index_of(group[i]), axis_, i, small_);
+  }
+  std::uint32_t found[kRow];
+  for (std::size_t first = 0; first < group.size(); first += kRow) {
+    const std::size_t end = std::min(first + kRow, group.size());
+    for (std::size_t begin = 0; begin < end; begin += kColumn) {
+      find_overlaps(small_, first, begin, std::min(begin + kColumn, end), found);
+      for (std::size_t i = std::max(first, begin); i < end; ++i) {
+        // Each pair once.
+        const auto earlier = (std::uint64_t{1} << std::min(i - begin, kColumn)) - 1;
+        for (std::uint64_t bits = found[i - first] & earlier; bits != 0; bits &= bits - 1) {
+          const auto place = begin + static_cast<std::size_t>(std::countr_zero(bits));
+          test(index_of(group[i]), index_of(group[place]));
+        }
+      }
     }
   }
 }

@@ -12,6 +12,13 @@ struct Box {
   std::uint32_t triangle;
 };
 
+// The boxes of a group that is searched pair by pair, as the caller's coordinates state them: boxes
+// apart here are so in unit coordinates, too.
+struct SmallBoxes {
+  static constexpr std::size_t most = 128;
+  float u_low[most] = {}, u_high[most] = {}, v_low[most] = {}, v_high[most] = {};
+};
+
 struct Strips;
 
 // Finds the overlaps in groups of triangles whose planes may be the same. Several searches may
@@ -32,6 +39,7 @@ class OverlapSearch {
   const UnitMesh& mesh_;
   std::vector<std::uint8_t>& flags_;
   std::size_t axis_ = 0;
+  SmallBoxes small_;
   std::vector<Box> boxes_;
   std::vector<Entry> order_, scratch_;
 };

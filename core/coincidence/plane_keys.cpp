@@ -1,71 +1,33 @@
 #include "core/coincidence/plane_keys.h"
 
-#include "core/coincidence/facet.h"
-
-#include <bit>
+#include "core/coincidence/place_cells.h"
+#include "core/coincidence/triangle_block.h"
+#include "core/vector_clones.h"
 
 namespace lockstep::coincidence {
 namespace {
 
 // Triangles with less area than this, relative to the square of their longest edge, have none.
 constexpr double kLeastArea = 0x1p-40;
-// Planes are told apart in steps of this: slopes, and offsets in half extents of the scene.
-constexpr double kCell = 0x1p-6;
-// Places in a plane are told apart by this many squares along each side of the mesh at most.
+// Squares along each side of the mesh at most.
 constexpr int kMostSquares = 16;
 // Squares are so many times as wide as the mean triangle at least: few reach into several.
 constexpr double kSquareWidth = 8.0;
 
-// std::floor() is a call where the instruction set lacks it.
-int rounded_down(double x) {
-  const int i = static_cast<int>(x);
-  return i - (x < i);
-}
-
-struct CellRange {
-  int first, last;
-};
-
-// The cells that a value may belong to: one, or two if its error reaches the boundary. Two
-// values whose difference their errors explain have a cell in common.
-CellRange cells_of(double value, double error) {
-  const double centre = value / kCell + 0.5;
-  const double reach = std::min(error / kCell, 0.5);
-  return {rounded_down(centre - reach), rounded_down(centre + reach)};
-}
-
-// A power of two.
-int squares_along(const UnitMesh& mesh) {
+Squares squares_over(const UnitMesh& mesh) {
   int squares = 1;
   while (squares < kMostSquares && kSquareWidth * mesh.mean_extent * squares <= 1.0) squares *= 2;
-  return squares;
+  return {squares};
 }
 
-// The squares that coordinates in [-1, 1] fall into.
-CellRange squares_of(double a, double b, double c, int squares) {
-  const auto square_of = [&](double x) {
-    return std::min(static_cast<int>((x + 1.0) * (0.5 * squares)), squares - 1);
-  };
-  return {square_of(least(a, b, c)), square_of(greatest(a, b, c))};
+LOCKSTEP_INLINE bool has_area(const Point& normal, double size) {
+  const double least_area = kLeastArea * size * size;
+  return squared_length(normal) > least_area * least_area;
 }
 
-// Cells of a plane, each at most 1 (slopes) or 3 (offsets) and a little.
-struct PlaneCell {
-  int u, v, offset;
-};
-
-// From the top: the square, so that entries of one place, and so their triangles, are close to one
-// another in memory; the upper bits of a product that every bit of the cell reaches (Knuth's
-// multiplicative hash); two bits for the axis.
-std::uint32_t key_from(std::size_t axis, const PlaneCell& c, unsigned square, int square_bits) {
-  constexpr int slopes = static_cast<int>(2.0 / kCell) + 8;
-  constexpr int offsets = static_cast<int>(6.0 / kCell) + 24;
-  const int cell =
-      ((c.u + slopes / 2) * slopes + c.v + slopes / 2) * offsets + c.offset + offsets / 2;
-  static_assert(std::int64_t{slopes} * slopes * offsets < std::int64_t{1} << 31);
-  const std::uint32_t hash = static_cast<std::uint32_t>(cell) * 0x9e3779b1u;
-  const std::uint32_t top = square_bits > 0 ? square << (32 - square_bits) : 0;
-  return top | hash >> square_bits >> 2 << 2 | static_cast<std::uint32_t>(axis);
+// No need to look at an axis whose slopes are out of the reach of any error.
+LOCKSTEP_INLINE bool may_dominate(double along, double most) {
+  return along >= most * (1.0 - kCell);
 }
 
 template <class F>
@@ -73,22 +35,15 @@ void for_each(CellRange cells, const F& f) {
   for (int i = cells.first; i <= cells.last; ++i) f(i);
 }
 
-void append_keys(const Facet& f, std::size_t axis, int squares, std::size_t index,
+void append_keys(const PlaceCells& cells, int axis, Squares squares, std::size_t index,
                  std::vector<Entry>& entries) {
-  const CellRange offsets = cells_of(f.offset, f.offset_error);
-  const CellRange us = cells_of(f.slope_u, f.slope_error);
-  const CellRange vs = cells_of(f.slope_v, f.slope_error);
-  const CellRange columns = squares_of(f.p[0].u, f.p[1].u, f.p[2].u, squares);
-  const CellRange rows = squares_of(f.p[0].v, f.p[1].v, f.p[2].v, squares);
-  const int square_bits = 2 * std::countr_zero(static_cast<unsigned>(squares));
-  for_each(us, [&](int u) {
-    for_each(vs, [&](int v) {
-      for_each(offsets, [&](int offset) {
-        for_each(rows, [&](int row) {
-          for_each(columns, [&](int column) {
-            const auto square = static_cast<unsigned>(row * squares + column);
-            const std::uint32_t key = key_from(axis, {u, v, offset}, square, square_bits);
-            entries.push_back(make_entry(key, index));
+  for_each(cells.u, [&](int u) {
+    for_each(cells.v, [&](int v) {
+      for_each(cells.offset, [&](int offset) {
+        for_each(cells.row, [&](int row) {
+          for_each(cells.column, [&](int column) {
+            const PlaceCell cell{u, v, offset, row, column};
+            entries.push_back(make_entry(key_of(cell, axis, squares, squares.key_bits()), index));
           });
         });
       });
@@ -96,29 +51,120 @@ void append_keys(const Facet& f, std::size_t axis, int squares, std::size_t inde
   });
 }
 
+// A range for each triangle of a block.
+struct BlockRanges {
+  int first[kBlock], last[kBlock];
+
+  void set(std::size_t i, CellRange cells) {
+    first[i] = cells.first;
+    last[i] = cells.last;
+  }
+  CellRange operator[](std::size_t i) const { return {first[i], last[i]}; }
+};
+
+// What a triangle adds to the entries.
+enum Kind : int { kNothing, kOneKey, kKeys, kSeveralAxes };
+
+// Of each triangle of a block; cells and keys are those along the dominant axis.
+struct BlockPlaces {
+  int kind[kBlock];
+  int axis[kBlock];
+  std::uint32_t key[kBlock];  // the first one
+  BlockRanges u, v, offset, row, column;
+
+  void set(std::size_t i, const PlaceCells& cells) {
+    u.set(i, cells.u);
+    v.set(i, cells.v);
+    offset.set(i, cells.offset);
+    row.set(i, cells.row);
+    column.set(i, cells.column);
+  }
+  PlaceCells cells(std::size_t i) const { return {u[i], v[i], offset[i], row[i], column[i]}; }
+};
+
+LOCKSTEP_INLINE Point select(bool first, const Point& a, const Point& b) {
+  return {first ? a.u : b.u, first ? a.v : b.v, first ? a.w : b.w};
+}
+
+LOCKSTEP_VECTOR_CLONES
+void find_places(const UnitMesh& shared, const TriangleBlock& block, Squares squares,
+                 BlockPlaces& found) {
+  const UnitMesh mesh = shared;  // which stores to `found` cannot change
+  const int key_bits = squares.key_bits();
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    // Something harmless stands for what is not finite or has no area.
+    const bool finite = is_finite(block, i);
+    const double noise = noise_at(mesh, finite ? largest_coordinate(block, i) : 0.0f);
+    const auto corner = [&](std::size_t c) LOCKSTEP_LAMBDA {
+      const auto& q = block.corners[c];
+      return select(finite, unit_point(mesh, q[0][i], q[1][i], q[2][i]), Point{});
+    };
+    const Corners p = {corner(0), corner(1), corner(2)};
+    const Point n = normal_of(p);
+    const double size = longest_edge(p);
+    const bool is_plane = has_area(n, size);
+
+    const Point along = {std::abs(n.u), std::abs(n.v), std::abs(n.w)};
+    const double most = greatest(along.u, along.v, along.w);
+    const int axes =
+        may_dominate(along.u, most) + may_dominate(along.v, most) + may_dominate(along.w, most);
+    const bool is_u = along.u == most, is_v = along.v == most;
+    const int axis = is_u ? 0 : is_v ? 1 : 2;
+    const auto seen = [&](const Point& q) LOCKSTEP_LAMBDA {
+      return select(is_u, turned(q, 0), select(is_v, turned(q, 1), q));
+    };
+    const Point seen_n = select(is_plane, seen(n), Point{0.0, 0.0, 1.0});
+    const Facet f = facet_of({seen(p[0]), seen(p[1]), seen(p[2])}, seen_n, size, noise);
+
+    const PlaceCells cells = place_cells(f, squares);
+    const int kind = axes > 1 ? kSeveralAxes : cells.is_one() ? kOneKey : kKeys;
+    found.kind[i] = is_plane ? kind : kNothing;
+    found.axis[i] = axis;
+    found.key[i] = key_of(PlaceCell{cells.u.first, cells.v.first, cells.offset.first,
+                                    cells.row.first, cells.column.first},
+                          axis, squares, key_bits);
+    found.set(i, cells);
+  }
+}
+
+// Where errors may leave open which axis is the dominant one.
+void append_several_axes(const UnitMesh& mesh, std::size_t index, Squares squares,
+                         std::vector<Entry>& entries) {
+  const Corners p = corners_along(mesh, index, 2);
+  const Point n = normal_of(p);
+  const double size = longest_edge(p), noise = coordinate_noise(mesh, index);
+  const std::array<double, 3> along = {std::abs(n.u), std::abs(n.v), std::abs(n.w)};
+  const double most = greatest(along[0], along[1], along[2]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!may_dominate(along[axis], most)) continue;
+    const Facet f = facet_of({turned(p[0], axis), turned(p[1], axis), turned(p[2], axis)},
+                             turned(n, axis), size, noise);
+    const double error = std::min(f.slope_error, 0.25 * kCell);
+    if (along[axis] < most * (1.0 - 2.0 * error)) continue;
+    append_keys(place_cells(f, squares), static_cast<int>(axis), squares, index, entries);
+  }
+}
+
 }  // namespace
 
 std::vector<Entry> plane_entries(const UnitMesh& mesh, std::size_t first, std::size_t last) {
-  const int squares = squares_along(mesh);
+  const Squares squares = squares_over(mesh);
   std::vector<Entry> entries;
   entries.reserve((last - first) * 2);
-  for (std::size_t i = first; i < last; ++i) {
-    const Corners p = corners_along(mesh, i, 2);
-    const Point n = normal_of(p);
-    const double size = longest_edge(p), least_area = kLeastArea * size * size;
-    // False also for what is no number.
-    if (!(squared_length(n) > least_area * least_area)) continue;
-    const std::array<double, 3> along = {std::abs(n.u), std::abs(n.v), std::abs(n.w)};
-    const double most = greatest(along[0], along[1], along[2]);
-    if (!std::isfinite(most)) continue;
-    const double noise = coordinate_noise(mesh, i);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      // No need to look at an axis whose slopes are out of the reach of any error.
-      if (along[axis] < most * (1.0 - kCell)) continue;
-      const Facet f = facet_of({turned(p[0], axis), turned(p[1], axis), turned(p[2], axis)},
-                               turned(n, axis), size, noise);
-      const double error = std::min(f.slope_error, 0.25 * kCell);
-      if (along[axis] >= most * (1.0 - 2.0 * error)) append_keys(f, axis, squares, i, entries);
+  TriangleBlock block;
+  BlockPlaces found;
+  for (std::size_t begin = first; begin < last; begin += kBlock) {
+    const std::size_t count = std::min(last - begin, kBlock);
+    load(mesh, begin, count, block);
+    find_places(mesh, block, squares, found);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (found.kind[i] == kOneKey) {
+        entries.push_back(make_entry(found.key[i], begin + i));
+      } else if (found.kind[i] == kKeys) {
+        append_keys(found.cells(i), found.axis[i], squares, begin + i, entries);
+      } else if (found.kind[i] == kSeveralAxes) {
+        append_several_axes(mesh, begin + i, squares, entries);
+      }
     }
   }
   return entries;

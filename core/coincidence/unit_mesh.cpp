@@ -1,5 +1,9 @@
 #include "core/coincidence/unit_mesh.h"
 
+#include "core/coincidence/triangle_block.h"
+#include "core/simd.h"
+#include "core/vector_clones.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -7,16 +11,6 @@
 
 namespace lockstep::coincidence {
 namespace {
-
-bool has_finite_vertices(const UnitMesh& mesh, std::size_t triangle) {
-  // A product with zero is zero, unless the value is infinite or no number.
-  float sum = 0.0f;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    const float* p = mesh.vertex(triangle, corner);
-    sum += p[0] * 0.0f + p[1] * 0.0f + p[2] * 0.0f;
-  }
-  return sum == 0.0f;
-}
 
 // Of finite triangles, in the caller's coordinates.
 struct Extent {
@@ -39,17 +33,57 @@ void grow(Extent& extent, const Extent& other) {
   extent.count += other.count;
 }
 
-Extent extent_of(const UnitMesh& mesh, std::size_t triangle) {
-  Extent extent;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float a = mesh.vertex(triangle, 0)[k], b = mesh.vertex(triangle, 1)[k],
-                c = mesh.vertex(triangle, 2)[k];
-    extent.low[k] = std::min(std::min(a, b), c);
-    extent.high[k] = std::max(std::max(a, b), c);
-    extent.sum = std::max(extent.sum, double{extent.high[k]} - double{extent.low[k]});
+// Bounds of the triangles at each place of several blocks, and the longest sides of the last one's
+// boxes; triangles that are not finite are left out.
+struct BlockExtents {
+  float low[3][kBlock], high[3][kBlock];
+  double side[kBlock];
+  int finite[kBlock];
+
+  BlockExtents() {
+    std::fill_n(&low[0][0], 3 * kBlock, std::numeric_limits<float>::infinity());
+    std::fill_n(&high[0][0], 3 * kBlock, -std::numeric_limits<float>::infinity());
   }
-  extent.count = 1;
-  return extent;
+};
+
+LOCKSTEP_VECTOR_CLONES
+void add(const TriangleBlock& __restrict block, BlockExtents& __restrict extents) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto &a = block.corners[0], &b = block.corners[1], &c = block.corners[2];
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const bool finite = is_finite(block, i);
+    const auto add_along = [&](std::size_t k) LOCKSTEP_LAMBDA {
+      const float low = least(a[k][i], b[k][i], c[k][i]);
+      const float high = greatest(a[k][i], b[k][i], c[k][i]);
+      const float low_so_far = extents.low[k][i], high_so_far = extents.high[k][i];
+      extents.low[k][i] = std::min(low_so_far, finite ? low : infinity);
+      extents.high[k][i] = std::max(high_so_far, finite ? high : -infinity);
+      return double{high} - double{low};
+    };
+    const double x = add_along(0), y = add_along(1), z = add_along(2);
+    extents.side[i] = finite ? greatest(x, y, z) : 0.0;
+    extents.finite[i] = finite;
+  }
+}
+
+void add(const UnitMesh& mesh, std::size_t first, std::size_t last, Extent& extent) {
+  TriangleBlock block;
+  BlockExtents extents;
+  for (; first < last; first += kBlock) {
+    const std::size_t count = std::min(last - first, kBlock);
+    load(mesh, first, count, block);
+    add(block, extents);
+    for (std::size_t i = 0; i < count; ++i) {
+      extent.sum += extents.side[i];
+      extent.count += static_cast<std::size_t>(extents.finite[i]);
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    extent.low[k] =
+        std::min(extent.low[k], *std::min_element(extents.low[k], extents.low[k] + kBlock));
+    extent.high[k] =
+        std::max(extent.high[k], *std::max_element(extents.high[k], extents.high[k] + kBlock));
+  }
 }
 
 // The same however many threads take part.
@@ -58,9 +92,7 @@ Extent extent_of(const UnitMesh& mesh) {
   return tbb::parallel_deterministic_reduce(
       Range(0, mesh.count, 1 << 14), Extent(),
       [&](const Range& range, Extent extent) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          if (has_finite_vertices(mesh, i)) grow(extent, extent_of(mesh, i));
-        }
+        add(mesh, range.begin(), range.end(), extent);
         return extent;
       },
       [](Extent a, const Extent& b) {

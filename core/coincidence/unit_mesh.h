@@ -16,6 +16,16 @@ inline constexpr double kRelativeNoise = 0x1p-22;
 // this fraction of the scene's largest coordinate.
 inline constexpr double kSmallestCoordinate = 1.0 / 64.0;
 
+// By value: vector code has no use for a reference to one of them.
+template <class T>
+T least(T a, T b, T c) {
+  return std::min(std::min(a, b), c);
+}
+template <class T>
+T greatest(T a, T b, T c) {
+  return std::max(std::max(a, b), c);
+}
+
 // The caller's mesh, and the map of its coordinates to [-1, 1].
 struct UnitMesh {
   const float* positions;
@@ -45,26 +55,34 @@ inline Point turned(const Point& p, std::size_t axis) {
   return axis == 0 ? Point{p.v, p.w, p.u} : axis == 1 ? Point{p.w, p.u, p.v} : p;
 }
 
+// The caller's coordinates, seen along z.
+inline Point unit_point(const UnitMesh& mesh, float x, float y, float z) {
+  return {(x - mesh.centre[0]) * mesh.scale, (y - mesh.centre[1]) * mesh.scale,
+          (z - mesh.centre[2]) * mesh.scale};
+}
+
 inline Corners corners_along(const UnitMesh& mesh, std::size_t triangle, std::size_t axis) {
   Corners corners;
   for (std::size_t i = 0; i < 3; ++i) {
     const float* p = mesh.vertex(triangle, i);
-    corners[i] = turned({(p[0] - mesh.centre[0]) * mesh.scale, (p[1] - mesh.centre[1]) * mesh.scale,
-                         (p[2] - mesh.centre[2]) * mesh.scale},
-                        axis);
+    corners[i] = turned(unit_point(mesh, p[0], p[1], p[2]), axis);
   }
   return corners;
 }
 
-// Bound of the error of a triangle's coordinates, in the mesh's unit coordinates.
+// Bound of the error of a triangle's coordinates, in the mesh's unit coordinates; `largest`: of the
+// caller's.
+inline double noise_at(const UnitMesh& mesh, float largest) {
+  return kRelativeNoise * mesh.scale *
+         std::max(double{largest}, kSmallestCoordinate * mesh.coordinate);
+}
 inline double coordinate_noise(const UnitMesh& mesh, std::size_t triangle) {
   float largest = 0.0f;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const float* p = mesh.vertex(triangle, corner);
     for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(p[k]));
   }
-  return kRelativeNoise * mesh.scale *
-         std::max(double{largest}, kSmallestCoordinate * mesh.coordinate);
+  return noise_at(mesh, largest);
 }
 
 }  // namespace lockstep::coincidence
