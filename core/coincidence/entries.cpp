@@ -81,6 +81,14 @@ void SharedKeys::link(std::span<const Entry> bucket, int common_bits) {
   for (std::size_t i = bucket.size(); i-- > 0;) {
     next_[i] = std::exchange(heads_[chain_of(bucket[i])], static_cast<std::uint32_t>(i + 1));
   }
+  // Without branches, which could not be predicted.
+  chains_.resize(bucket.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < bucket.size(); ++i) {
+    chains_[count] = static_cast<std::uint32_t>(i + 1);
+    count += (heads_[chain_of(bucket[i])] == i + 1) & (next_[i] != 0);
+  }
+  chains_.resize(count);
 }
 
 void SharedKeys::collect(std::span<const Entry> bucket, std::uint32_t head) {

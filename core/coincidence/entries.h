@@ -50,10 +50,8 @@ class SharedKeys {
   template <class F>
   void for_each_group(std::span<const Entry> bucket, int common_bits, const F& f) {
     link(bucket, common_bits);
-    for (std::uint32_t i = 0; i < bucket.size(); ++i) {
-      const bool is_head = heads_[chain_of(bucket[i])] == i + 1;
-      if (!is_head || next_[i] == 0) continue;
-      collect(bucket, i + 1);
+    for (const std::uint32_t head : chains_) {
+      collect(bucket, head);
       for (std::size_t first = 0, end = 0; first < chain_.size(); first = end) {
         const std::uint32_t key = key_of(chain_[first]);
         while (end < chain_.size() && key_of(chain_[end]) == key) ++end;
@@ -73,6 +71,7 @@ class SharedKeys {
 
   Shift shift_{};
   std::vector<std::uint32_t> heads_, next_;  // 1 + an index into the bucket; 0: none
+  std::vector<std::uint32_t> chains_;        // heads of those with several entries
   std::vector<Entry> chain_;                 // sorted by key
 };
 

@@ -21,7 +21,7 @@ LOCKSTEP_INLINE int rounded_down(double x) {
 struct CellRange {
   int first, last;
 
-  bool is_one() const { return first == last; }
+  int count() const { return last - first + 1; }
 };
 
 // The cells that a value may belong to: one, or two if its error reaches the boundary. Two
@@ -51,8 +51,8 @@ struct PlaceCells {
   CellRange u, v, offset;  // cells of its plane
   CellRange row, column;   // squares that it reaches into
 
-  bool is_one() const {
-    return u.is_one() & v.is_one() & offset.is_one() & row.is_one() & column.is_one();
+  int count() const {
+    return u.count() * v.count() * offset.count() * row.count() * column.count();
   }
 };
 
@@ -66,6 +66,13 @@ LOCKSTEP_INLINE PlaceCells place_cells(const Facet& f, Squares squares) {
 struct PlaceCell {
   int u, v, offset, row, column;
 };
+
+LOCKSTEP_INLINE PlaceCell first_of(const PlaceCells& c) {
+  return {c.u.first, c.v.first, c.offset.first, c.row.first, c.column.first};
+}
+LOCKSTEP_INLINE PlaceCell last_of(const PlaceCells& c) {
+  return {c.u.last, c.v.last, c.offset.last, c.row.last, c.column.last};
+}
 
 // From the top: the square, so that entries of one place, and so their triangles, are close to one
 // another in memory; the upper bits of a product that every bit of the cell reaches (Knuth's

@@ -63,13 +63,13 @@ struct BlockRanges {
 };
 
 // What a triangle adds to the entries.
-enum Kind : int { kNothing, kOneKey, kKeys, kSeveralAxes };
+enum Kind : int { kNothing, kOneKey, kTwoKeys, kMoreKeys, kSeveralAxes };
 
 // Of each triangle of a block; cells and keys are those along the dominant axis.
 struct BlockPlaces {
   int kind[kBlock];
   int axis[kBlock];
-  std::uint32_t key[kBlock];  // the first one
+  std::uint32_t first_key[kBlock], last_key[kBlock];
   BlockRanges u, v, offset, row, column;
 
   void set(std::size_t i, const PlaceCells& cells) {
@@ -117,12 +117,11 @@ void find_places(const UnitMesh& shared, const TriangleBlock& block, Squares squ
     const Facet f = facet_of({seen(p[0]), seen(p[1]), seen(p[2])}, seen_n, size, noise);
 
     const PlaceCells cells = place_cells(f, squares);
-    const int kind = axes > 1 ? kSeveralAxes : cells.is_one() ? kOneKey : kKeys;
+    const int kind = axes > 1 ? kSeveralAxes : std::min<int>(cells.count(), kMoreKeys);
     found.kind[i] = is_plane ? kind : kNothing;
     found.axis[i] = axis;
-    found.key[i] = key_of(PlaceCell{cells.u.first, cells.v.first, cells.offset.first,
-                                    cells.row.first, cells.column.first},
-                          axis, squares, key_bits);
+    found.first_key[i] = key_of(first_of(cells), axis, squares, key_bits);
+    found.last_key[i] = key_of(last_of(cells), axis, squares, key_bits);
     found.set(i, cells);
   }
 }
@@ -159,8 +158,11 @@ std::vector<Entry> plane_entries(const UnitMesh& mesh, std::size_t first, std::s
     find_places(mesh, block, squares, found);
     for (std::size_t i = 0; i < count; ++i) {
       if (found.kind[i] == kOneKey) {
-        entries.push_back(make_entry(found.key[i], begin + i));
-      } else if (found.kind[i] == kKeys) {
+        entries.push_back(make_entry(found.first_key[i], begin + i));
+      } else if (found.kind[i] == kTwoKeys) {
+        entries.push_back(make_entry(found.first_key[i], begin + i));
+        entries.push_back(make_entry(found.last_key[i], begin + i));
+      } else if (found.kind[i] == kMoreKeys) {
         append_keys(found.cells(i), found.axis[i], squares, begin + i, entries);
       } else if (found.kind[i] == kSeveralAxes) {
         append_several_axes(mesh, begin + i, squares, entries);
