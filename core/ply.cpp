@@ -73,42 +73,55 @@ void read_vertex(Source& source, const VertexLayout& layout, TriangleMesh& mesh)
 }
 
 // Where each slot's value stands in the row of a vertex, in bytes; nothing unless rows have one
-// length and values are floats.
+// length, and values are floats that the mesh takes, each once.
 struct VertexRows {
-  std::vector<std::pair<int, size_t>> offsets;  // by slot, in the order of the properties
+  std::array<size_t, 8> offsets{};
   size_t stride = 0;
 };
 
 std::optional<VertexRows> vertex_rows(const Source& source, const VertexLayout& layout) {
   VertexRows rows;
+  int values = 0;
   for (size_t p = 0; p < layout.slots.size(); ++p) {
     const Property& property = layout.element.properties[p];
     if (property.count_type) return std::nullopt;
     if (layout.slots[p] >= 0) {
       if (property.type != Scalar::Float32) return std::nullopt;
-      rows.offsets.emplace_back(layout.slots[p], rows.stride);
+      rows.offsets[layout.slots[p]] = rows.stride;
+      ++values;
     }
     rows.stride += size_of(property.type);
   }
-  return source.is_native() ? std::optional(rows) : std::nullopt;
+  const bool all_taken = values == 3 + 3 * layout.with_normals + 2 * layout.with_uvs;
+  return source.is_native() && all_taken ? std::optional(rows) : std::nullopt;
 }
 
 // Takes up to `count` whole rows, and stops at the first one that has a value out of range.
 std::uint64_t take_rows(Source& source, const VertexLayout& layout, const VertexRows& rows,
                         std::uint64_t count, TriangleMesh& mesh) {
   count = std::min(count, source.bytes_left() / rows.stride);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    std::array<float, 8> value{};
+  const char* row = source.rest();
+  std::uint64_t taken = 0;
+  for (; taken < count; ++taken, row += rows.stride) {
     bool in_range = true;
-    for (const auto& [slot, offset] : rows.offsets) {
-      std::memcpy(&value[slot], source.rest() + offset, sizeof(float));
-      in_range &= std::abs(double{value[slot]}) <= largest_coordinate;
-    }
-    if (!in_range) return i;
-    append_vertex(layout, value, mesh);
-    source.take(rows.stride);
+    const auto value = [&](size_t slot) {
+      float v;
+      std::memcpy(&v, row + rows.offsets[slot], sizeof v);
+      in_range &= std::abs(double{v}) <= largest_coordinate;
+      return v;
+    };
+    const glm::vec3 position(value(0), value(1), value(2));
+    glm::vec3 normal(0.0f);
+    glm::vec2 uv(0.0f);
+    if (layout.with_normals) normal = {value(3), value(4), value(5)};
+    if (layout.with_uvs) uv = {value(6), value(7)};
+    if (!in_range) break;
+    mesh.positions.push_back(position);
+    if (layout.with_normals) mesh.normals.push_back(normal);
+    if (layout.with_uvs) mesh.uvs.push_back(uv);
   }
-  return count;
+  source.take(taken * rows.stride);
+  return taken;
 }
 
 void read_vertices(Source& source, const Element& element, TriangleMesh& mesh) {
@@ -147,6 +160,22 @@ class FaceReader {
            vertex_count_ <= 1u << 31;  // so that negative indices are too large ones
   }
 
+  // Takes up to `count` plain triangles, and stops at the first face that is none or is wrong.
+  std::uint64_t take_triangles(std::uint64_t count) {
+    constexpr size_t size = 1 + 3 * sizeof(std::uint32_t);
+    count = std::min(count, source_.bytes_left() / size);
+    const char* face = source_.rest();
+    std::uint64_t taken = 0;
+    for (; taken < count && *face == 3; ++taken, face += size) {
+      std::uint32_t t[3];
+      std::memcpy(t, face + 1, sizeof t);
+      if (std::max({t[0], t[1], t[2]}) >= vertex_count_) break;
+      mesh_.triangles.emplace_back(t[0], t[1], t[2]);
+    }
+    source_.take(taken * size);
+    return taken;
+  }
+
   // Takes a plain face; nothing is taken where something is wrong with it.
   bool take_plain() {
     if (source_.bytes_left() < 1) return false;
@@ -154,17 +183,10 @@ class FaceReader {
     const auto count = static_cast<unsigned char>(*rest);
     const size_t size = 1 + 4 * size_t{count};
     if (count < 3 || source_.bytes_left() < size) return false;
-    if (count == 3) {
-      std::uint32_t t[3];
-      std::memcpy(t, rest + 1, sizeof t);
-      if (std::max({t[0], t[1], t[2]}) >= vertex_count_) return false;
-      mesh_.triangles.emplace_back(t[0], t[1], t[2]);
-    } else {
-      corners_.resize(count);
-      std::memcpy(corners_.data(), rest + 1, size - 1);
-      if (*std::max_element(corners_.begin(), corners_.end()) >= vertex_count_) return false;
-      append_fan(corners_, mesh_);
-    }
+    corners_.resize(count);
+    std::memcpy(corners_.data(), rest + 1, size - 1);
+    if (*std::max_element(corners_.begin(), corners_.end()) >= vertex_count_) return false;
+    append_fan(corners_, mesh_);
     source_.take(size);
     return true;
   }
@@ -217,7 +239,8 @@ void read_faces(Source& source, const Element& element, std::uint64_t vertex_cou
   FaceReader faces(source, element, vertex_count, mesh);
   const bool plain = faces.is_plain();
   for (std::uint64_t i = 0; i < element.count; ++i) {
-    if (!plain || !faces.take_plain()) faces.read(i);
+    if (plain) i += faces.take_triangles(element.count - i);
+    if (i < element.count && (!plain || !faces.take_plain())) faces.read(i);
   }
 }
 
