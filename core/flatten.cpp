@@ -2,6 +2,7 @@
 
 #include "core/fingerprint.h"
 
+#include <tbb/parallel_invoke.h>
 #include <glm/gtc/matrix_inverse.hpp>
 
 #include <algorithm>
@@ -32,21 +33,32 @@ void for_each_mesh(const SceneDescription& description, const F& f) {
   });
 }
 
-void append_mesh(FlatScene& flat, const TriangleMesh& mesh) {
-  const auto first_vertex = std::int32_t(flat.positions.size() / 3);
-  append_values(mesh.positions, flat.positions);
-  for (const glm::uvec3 t : mesh.triangles) {
-    const glm::ivec3 moved = first_vertex + glm::ivec3(t);
-    flat.triangles.insert(flat.triangles.end(), {moved.x, moved.y, moved.z});
-  }
+void append_positions(const SceneDescription& description, std::vector<float>& positions) {
+  for_each_mesh(description,
+                [&](const TriangleMesh& mesh) { append_values(mesh.positions, positions); });
+}
+
+// Indices count over the vertices of all meshes.
+void append_triangles(const SceneDescription& description, std::vector<std::int32_t>& triangles) {
+  std::int32_t first_vertex = 0;
+  for_each_mesh(description, [&](const TriangleMesh& mesh) {
+    for (const glm::uvec3 t : mesh.triangles) {
+      const glm::ivec3 moved = first_vertex + glm::ivec3(t);
+      triangles.insert(triangles.end(), {moved.x, moved.y, moved.z});
+    }
+    first_vertex += std::int32_t(mesh.positions.size());
+  });
 }
 
 void append_shape(FlatScene& flat, const Shape& shape, bool one_sided) {
   const auto* mesh = std::get_if<TriangleMesh>(&shape.geometry);
-  FlatGeometry g{std::int32_t(flat.triangles.size() / 3), 0, mesh == nullptr};
+  FlatGeometry g{0, 0, mesh == nullptr};
+  if (!flat.geometries.empty()) {
+    g.first_triangle =
+        flat.geometries.back().first_triangle + flat.geometries.back().triangle_count;
+  }
   if (mesh) {
     g.triangle_count = std::int32_t(mesh->triangles.size());
-    append_mesh(flat, *mesh);
     flat.spheres.insert(flat.spheres.end(), 4, 0.0f);
   } else {
     const auto& sphere = std::get<Sphere>(shape.geometry);
@@ -222,12 +234,9 @@ void reserve(const SceneDescription& description, FlatScene& flat) {
   flat.triangles.reserve(3 * triangles + 4);
 }
 
-}  // namespace
-
-FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance,
-                  const TextureTable& textures) {
-  FlatScene flat;
-  reserve(description, flat);
+// All but the arrays of positions and triangles.
+void flatten_rest(const SceneDescription& description, glm::vec3 environment_radiance,
+                  const TextureTable& textures, FlatScene& flat) {
   flatten_materials(description, flat);
   for_each_shape(description, [&](const Shape& shape) {
     append_shape(flat, shape, !description.materials[size_t(shape.material)].two_sided);
@@ -239,6 +248,17 @@ FlatScene flatten(const SceneDescription& description, glm::vec3 environment_rad
   flat.features |= light_features(flat);
   flat.features |= texture_features(description, flat);
   append_uvs(flat, description);
+}
+
+}  // namespace
+
+FlatScene flatten(const SceneDescription& description, glm::vec3 environment_radiance,
+                  const TextureTable& textures) {
+  FlatScene flat;
+  reserve(description, flat);
+  tbb::parallel_invoke([&] { append_positions(description, flat.positions); },
+                       [&] { append_triangles(description, flat.triangles); },
+                       [&] { flatten_rest(description, environment_radiance, textures, flat); });
   pad(flat);
   flatten_camera(description.camera, description.film, flat);
   return flat;

@@ -325,7 +325,10 @@ void flatten_lights(const SceneDescription& description, glm::vec3 environment_r
     if (textured && !chosen) make_glow(*shape.emission, added, flat);
     lights.insert(lights.end(), added.begin(), added.end());
   }
-  const bool from_afar = description.environment || !description.lights.empty();
+  const bool from_afar =
+      description.environment ||
+      std::any_of(description.lights.begin(), description.lights.end(),
+                  [](const LightSource& l) { return std::holds_alternative<DistantLight>(l); });
   const float radius = from_afar ? scene_radius(description) : 1.0f;
   if (description.environment && description.environment->radiance != glm::vec3(0.0f)) {
     const bool constant = description.environment->mapping == Environment::Mapping::Constant;
