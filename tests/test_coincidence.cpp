@@ -2,6 +2,7 @@
 #include "core/coincidence.h"
 #include "core/mesh.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -300,36 +301,39 @@ TEST(Coincidence, AgreesWithAreasOnALattice) {
   std::mt19937 random(14);
   std::uniform_int_distribution<int> lattice(0, 12), planes(0, 2);
   for (int round = 0; round < 300; ++round) {
-    // Up to the largest group that is searched pair by pair, and above.
-    const std::size_t count = round % 2 ? 12 : 60;
+    // Few in a plane; more than are compared at a time; more than are searched pair by pair.
+    const std::size_t count = round % 50 == 0 ? 450 : round % 5 == 0 ? 120 : 12;
+    std::uniform_int_distribution<int> places(0, 2 * static_cast<int>(std::sqrt(count)));
     TriangleMesh mesh;
     std::vector<std::array<glm::dvec2, 3>> corners(count);
     std::vector<int> plane(count);
     for (std::size_t i = 0; i < count; ++i) {
       plane[i] = planes(random);
       std::array<glm::vec3, 3> p;
-      const glm::ivec2 place(3 * lattice(random), 3 * lattice(random));
+      const glm::ivec2 place(3 * places(random), 3 * places(random));
       for (std::size_t k = 0; k < 3; ++k) {
         corners[i][k] = place + glm::ivec2(lattice(random) / 2, lattice(random) / 2);
         p[k] = glm::vec3(corners[i][k], plane[i]);
       }
       add_triangle(mesh, p[0], p[1], p[2]);
     }
+    std::vector<bool> has_area(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      has_area[i] = shared_area(corners[i], corners[i]) > 0.5;
+    }
     Flags expected(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j < count; ++j) {
-        if (i == j || plane[i] != plane[j]) continue;
-        if (shared_area(corners[i], corners[i]) < 0.5) continue;  // no area of its own
-        if (shared_area(corners[j], corners[j]) < 0.5) continue;
+        if (i == j || plane[i] != plane[j] || !has_area[i] || !has_area[j]) continue;
+        const glm::dvec2 apart = glm::abs(corners[i][0] - corners[j][0]);
+        if (apart.x > 12.0 || apart.y > 12.0) continue;  // each is 6 wide and high at most
         if (shared_area(corners[i], corners[j]) > 1e-9) expected[i] = 1;
       }
     }
     ASSERT_EQ(flags_of(mesh), expected) << "round " << round;
     // Lines of no area have one after rounding, so they are left out.
     TriangleMesh tilted = mesh;
-    std::erase_if(tilted.triangles, [&](const glm::uvec3& t) {
-      return shared_area(corners[t.x / 3], corners[t.x / 3]) < 0.5;
-    });
+    std::erase_if(tilted.triangles, [&](const glm::uvec3& t) { return !has_area[t.x / 3]; });
     apply_transform(tilted, random_transform(random));
     const Flags flags = flags_of(tilted);
     for (std::size_t i = 0; i < flags.size(); ++i) {
