@@ -69,9 +69,8 @@ LOCKSTEP_INLINE SphericalRectangle<V> spherical_rectangle(const Vec3<V>& to_corn
                                                           const Vec3<V>& edge1,
                                                           const Vec3<V>& edge2,
                                                           const Vec3<V>& normal) {
-  const V width2 = dot(edge1, edge1), height2 = dot(edge2, edge2);
-  const V inverse_width = rsqrt(width2), inverse_height = rsqrt(height2);
-  const V width = width2 * inverse_width, height = height2 * inverse_height;
+  const V width = length(edge1), height = length(edge2);
+  const V inverse_width = V(1.0f) / width, inverse_height = V(1.0f) / height;
   const V x0 = dot(to_corner, edge1) * inverse_width, y0 = dot(to_corner, edge2) * inverse_height;
   const V x1 = x0 + width, y1 = y0 + height, z = abs(dot(to_corner, normal));
   const SeenCorner<V> c00(x0, y0, z), c01(x0, y1, z), c10(x1, y0, z), c11(x1, y1, z);
