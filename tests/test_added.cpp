@@ -6,6 +6,10 @@
 #include "samplers/presets.h"
 #include "tests/t_samples.h"
 
+#include <cstdlib>
+#include <list>
+#include <string>
+
 namespace lockstep {
 namespace test_added {
 
@@ -69,6 +73,46 @@ TEST(Added, NamesThatAreTakenOrCannotBeTypedAreRefused) {
   }
   EXPECT_EQ(sequence_infos().size(), std::size_t(Sequences::size));
   EXPECT_EQ(perturbation_infos().size(), std::size_t(Perturbations::size));
+}
+
+// What is added stays for as long as the program runs: in processes of their own.
+void expect_in_a_process(void (*check)()) {
+  EXPECT_EXIT(
+      {
+        check();
+        std::exit(testing::Test::HasFailure() ? 1 : 0);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+TEST(AddedDeathTest, SequencesAndOffsetsAreFoundByTheirNames) {
+  expect_in_a_process([] {
+    add_sequence(SequenceInfo{"mine", "", ""}, points_of<OwenSequence>());
+    add_perturbation(PerturbationInfo{"my-offset", "", ""}, offsets_of<FreshOffset>());
+    EXPECT_EQ(sequence_infos().back().name, "mine");
+    EXPECT_EQ(perturbation_infos().back().name, "my-offset");
+    expect_same_values(state_of("owen", 5, plan), state_of("mine", 5, plan));
+    expect_same_values(state_of("cpt:offset=fresh,weight=0.5", 5, plan),
+                       state_of("cpt:offset=my-offset,weight=0.5", 5, plan));
+    EXPECT_THROW(add_sequence(SequenceInfo{"mine", "", ""}, points_of<OwenSequence>()), Error);
+    EXPECT_THROW(
+        add_perturbation(PerturbationInfo{"my-offset", "", ""}, offsets_of<FreshOffset>()), Error);
+  });
+}
+
+TEST(AddedDeathTest, AsManyAreAddedAsAnIdTellsApart) {
+  expect_in_a_process([] {
+    std::list<std::string> names;  // which live as long as the process
+    for (std::size_t i = perturbation_infos().size(); i < 256; ++i) {
+      names.push_back("offset-" + std::to_string(i));
+      add_perturbation(PerturbationInfo{names.back(), "", ""}, offsets_of<FreshOffset>());
+    }
+    EXPECT_THROW(add_perturbation(PerturbationInfo{"one-more", "", ""}, offsets_of<FreshOffset>()),
+                 Error);
+    EXPECT_EQ(perturbation_infos().size(), 256u);
+    expect_same_values(state_of("cpt:offset=fresh,weight=0.5", 5, plan),
+                       state_of("cpt:weight=0.5,offset=" + names.back(), 5, plan));
+  });
 }
 
 }  // namespace test_added
