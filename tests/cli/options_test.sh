@@ -33,6 +33,7 @@ render,compare,profile --traversal     list single packet3 packet single-x none 
 render,compare,profile --camera        list camera|such fov=0 fov=180 fov=nan fov=1e99 origin=1,2 origin=inf,0,0 lens=-1 focus=0 up=0,0,0 nosuch=1 : origin= .
 render,compare,profile --environment   list environment 1,2 -1,0,0 nan,0,0 inf,0,0 1e99,0,0 nosuch.exr . 1,2,3,4
 render,compare,profile --environment-up choice z
+render,compare,profile --intersection   choice fast
 render,compare,profile --environment-scale num 0 1000000000
 render,profile     --depth             int 1 1000
 compare            --depth             list from.1.to.1000 0 -1 1.5 1,x nan 1e99 1001 , 1,,2 99999999999
