@@ -12,7 +12,7 @@ inline namespace LOCKSTEP_ISA_NAMESPACE {
 template <class U>
 LOCKSTEP_INLINE Fractions<U> added_fractions(PointsFunction points, const SamplerState& s, U pixel,
                                              U sample, int pair) {
-  constexpr int lanes = int(sizeof(U) / sizeof(std::uint32_t));
+  constexpr int lanes = width_of<U>;
   std::uint32_t pixels[lanes], samples[lanes], x[lanes], y[lanes];
   store(pixels, pixel);
   store(samples, sample);
