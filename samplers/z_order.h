@@ -26,12 +26,12 @@ LOCKSTEP_INLINE U permuted_digit(U digit, U hash) {
   return product ^ ((hash >> 17) & U(3u));
 }
 
-// What the places of a tile's samples have in common, where that is anything: the upper bits of
-// the index, and the keys.
+// What the places of a tile's samples have in common: upper bits of the index, and the keys.
 struct CommonDigits {
   std::uint32_t above = 0;   // the index's own bits, shifted down
   std::uint32_t result = 0;  // permuted, in place
-  int bits = 0;              // 0: nothing
+  int bits = 0;
+  bool has_keys = false;
   Hash4<std::uint32_t> keys{};
 };
 
@@ -74,7 +74,7 @@ LOCKSTEP_INLINE ZOrder<U> z_order(const SamplerState& s, U pixel, U sample, int 
   const U code = morton_code(PixelPosition<U>{p.x & mask, p.y & mask});
   const U index = (code << sample_bits) | (sample & U((1u << sample_bits) - 1u));
   const int bits = 2 * pixel_bits + sample_bits;
-  if (common.bits > 0) {
+  if (common.has_keys) {
     const Hash4<std::uint32_t>& k = common.keys;
     return {index, {U(k.x), U(k.y), U(k.z), U(k.w)}, bits};
   }
@@ -88,8 +88,9 @@ inline CommonDigits digits_of_tile(const SamplerState& s, std::uint32_t pixel, s
                                    int sample_bits, int pair, std::uint32_t seed) {
   const ZOrder<std::uint32_t> z = z_order(s, pixel, sample, sample_bits, pair, seed);
   const int own = 2 * std::countr_zero(unsigned(share_tile)) + sample_bits;
-  if (z.bits <= own) return {};
-  return {z.index >> own, permuted_digits(z.index, z.bits, z.keys.x, {}, own), z.bits - own,
+  if (z.bits < own) return {};  // tiles of several blocks of pixels
+  if (z.bits == own) return {0, 0, 0, true, z.keys};
+  return {z.index >> own, permuted_digits(z.index, z.bits, z.keys.x, {}, own), z.bits - own, true,
           z.keys};
 }
 
