@@ -43,6 +43,7 @@ Packets packets_of(int width) {
 // What is best most often, before anything is measured.
 TraversalMode first_mode(int width, bool shadow, int spread) {
   if (width == 1) return {Packets::Single, false};
+  if (shadow && width == 16) return {Packets::Sixteen, false};
   if (has_streams && shadow && spread > 0) return {Packets::Stream1M, false};
   return {packets_of(width), spread == 0};
 }

@@ -30,8 +30,8 @@ int spread_class(float cosine);
 // A choice for each class of queues. One object per thread.
 class TraversalPolicy {
  public:
-  // Uses `fixed` for everything if given; else begins with packets of `width` lanes, and with
-  // streams for shadow rays that spread.
+  // Uses `fixed` for everything if given; else begins with packets of `width` lanes, and below 16
+  // lanes with streams for shadow rays that spread.
   TraversalPolicy(std::optional<TraversalMode> fixed, int width);
 
   TraversalPlan plan(const QueueClass& queue, int rays);
