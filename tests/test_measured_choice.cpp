@@ -254,7 +254,9 @@ TEST(TraversalPolicy, BeginsWithPacketsOfTheWidthCoherentOnesForParallelRays) {
     for (const RayKind kind : {RayKind::Camera, RayKind::Bounce, RayKind::Shadow}) {
       for (int spread = 0; spread < spreads; ++spread) {
         TraversalMode expected{packets, spread == 0 && width > 1};
-        if (has_streams && kind == RayKind::Shadow && spread > 0 && width > 1) {
+        if (kind == RayKind::Shadow && width == 16) {
+          expected = {Packets::Sixteen, false};
+        } else if (has_streams && kind == RayKind::Shadow && spread > 0 && width > 1) {
           expected = {Packets::Stream1M, false};
         }
         EXPECT_EQ(policy.plan({kind, 0, spread}, 1024).mode, expected);
